@@ -1,4 +1,4 @@
-# Every target installs what it needs: Debian packages where they are missing, Python packages into .venv.
+# Every target installs the packages that it needs: missing Debian packages, and Python packages into .venv.
 
 PYTHON ?= python3
 VENV := .venv
@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 OUT ?= demo
 SECONDS ?= 600
 JOBS ?= $(shell nproc)
-# A wheel to install in place of building the package from its sources.
+# A wheel to install instead of building the package from its sources.
 WHEEL ?=
 PACKAGE := $(shell find cpp python cmake -type f -not -name '*.pyc') CMakeLists.txt pyproject.toml
 EIGEN := /usr/include/eigen3/Eigen/Core:libeigen3-dev
@@ -18,20 +18,20 @@ CXX_SOURCES = $(shell find cpp python tests bench examples web ros2 -name '*.[ch
 
 .DELETE_ON_ERROR:
 .PHONY: help demo page test homes test-cpp test-python test-docs test-view clang sanitize nightly arm64 arm64-wheel windows macos cross firmware packages fuzz soak motions grasp peers lint \
-        format stubs docs notebooks bench count stalls worst sdist wheel clean
+        prose format stubs docs notebooks bench count stalls worst sdist wheel clean
 
 help:
 	@echo 'make demo             reproduce the paper: tables, figures and a report in ./$(OUT)'
 	@echo 'make page             a page to drag an arm in, with the library in WebAssembly: build/web/page.html'
 	@echo 'make test             build and run the C++ tests and the Python tests'
-	@echo 'make test-view        the tests of the viewer and of the page in a browser, which make test skips without them'
+	@echo 'make test-view        the tests of the viewer and the page in a browser; make test skips them without one'
 	@echo 'make homes            fit capsules to the meshes of every robot of the tests, and try its home posture'
 	@echo 'make clang, sanitize  the C++ tests with clang++, and under ASan and UBSan'
 	@echo 'make arm64, windows   the C++ tests for 64-bit Arm under qemu, and for Windows under Wine'
 	@echo 'make arm64-wheel      the Python package for 64-bit Arm, its TESTS run under qemu'
 	@echo 'make macos            the C++ tests and the Python extension for macOS, compiled and linked only'
 	@echo 'make cross            a few motions on Arm and Windows, compared with those here'
-	@echo 'make firmware         a program for a bare Cortex-M7, run by qemu and compared with one here'
+	@echo 'make firmware         a program for a bare Cortex-M7, run by qemu and compared with this machine'
 	@echo 'make packages         the recipes for Conan and, with VCPKG_ROOT, for vcpkg'
 	@echo 'make nightly          the C++ tests and a day of a control loop'
 	@echo 'make soak             a day of a control loop at 1 kHz'
@@ -39,12 +39,13 @@ help:
 	@echo 'make grasp            10,000 motions of a tray in two arms, and a few by Pink, Mink, PlaCo and roboplan'
 	@echo 'make peers            the programs of docs/coming_from.md, in environments of their own'
 	@echo 'make fuzz             look for input that breaks the tracker, for SECONDS=$(SECONDS)'
-	@echo 'make lint             formatting, static analysis, imports, types, stubs'
+	@echo 'make lint             formatting, static analysis, imports, types, stubs, spelling, terms to avoid'
+	@echo 'make prose            draw sentences to read: SEED=1 COUNT=20'
 	@echo 'make bench            every benchmark, against the peers that are found; QUICK=1 for a first look'
 	@echo 'make count            compare the instructions of each step with those recorded'
 	@echo 'make worst            the longest ticks that a search has found; SEARCH=600 searches on'
 	@echo 'make stalls           the loads of each step that wait for stores, against those recorded'
-	@echo 'make format, stubs    format all sources and list the headers in fpbm.hpp; write the Python stubs afresh'
+	@echo 'make format, stubs    format all sources and list the headers in fpbm.hpp; rewrite the Python stubs'
 	@echo 'make docs             build the documentation in ./build/docs, its notebooks executed'
 	@echo 'make notebooks        only the notebooks, executed, as .ipynb in ./build/notebooks'
 	@echo 'make test-docs        run every code block of the README and the documentation'
@@ -60,7 +61,7 @@ page:
 
 test: test-cpp test-python
 
-# LAWS=OFF: only the rest, as after make sanitize for make clang, which is the same compiler.
+# LAWS=OFF leaves out the laws, for example in make clang after make sanitize, which has the same compiler.
 test-cpp: preset = release
 clang: preset = clang
 sanitize: preset = sanitize
@@ -88,7 +89,7 @@ arm64-wheel:
 	PYTHON=$(PYTHON) tools/venv.sh $(VENV)
 	PYTHON=$(BIN)/python tools/arm64_wheel.sh build/arm64-wheel $(TESTS)
 
-# Zig carries what a Mac's programs are linked with; nothing here runs them.
+# Zig has the libraries that programs for macOS are linked with; the programs are not run here.
 macos: $(VENV)/macos
 	tools/need.sh cmake ninja:ninja-build $(EIGEN) /usr/src/googletest/CMakeLists.txt:googletest
 	for preset in macos-aarch64 macos-x86_64; do \
@@ -159,7 +160,7 @@ peers: $(VENV)/package $(VENV)/test
 	-tools/need.sh /usr/lib/python3/dist-packages/PyKDL$(call SUFFIX,/usr/bin/python3):python3-pykdl
 	FPBM_PEERS=build/stack_peers $(BIN)/python -m pytest tests/docs/test_coming_from.py -s
 
-# The corpus stays in build/fuzz, so that the next run goes on from it.
+# The corpus stays in build/fuzz, so that the next run continues from it.
 fuzz:
 	tools/need.sh clang++:clang cmake ninja:ninja-build $(EIGEN)
 	tools/need.sh $(call clang_library,fuzzer)
@@ -186,12 +187,20 @@ lint: $(VENV)/package $(VENV)/lint
 	clang-tidy --quiet tools/umbrella.cpp -- -std=c++17 -I$(CURDIR)/cpp/include -isystem /usr/include/eigen3
 	$(PYTHON) tools/headers.py --check
 	$(PYTHON) tools/documented.py
+	$(PYTHON) tools/prose.py check
+	git ls-files -z | xargs -0 $(BIN)/codespell
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/lint-imports
 	$(BIN)/mypy --python-executable $(BIN)/python
 	$(BIN)/python tools/stubs.py --check
 	$(BIN)/python -m mypy.stubtest fpbm_cpp._core --mypy-config-file pyproject.toml --allowlist tools/stubtest.txt
+
+# Sentences drawn at random from pages, comments and messages; another SEED draws others.
+prose: SEED ?= 1
+prose: COUNT ?= 20
+prose:
+	@$(PYTHON) tools/prose.py draw --seed $(SEED) --count $(COUNT)
 
 format: $(VENV)/lint
 	tools/need.sh clang-format
@@ -227,7 +236,7 @@ bench: $(VENV)/package $(VENV)/test $(VENV)/bench
 	cmake --build --preset bench --parallel $(JOBS)
 	$(BIN)/python bench/run.py build/bench/bench $(if $(QUICK),--quick)
 
-# Fails where a step takes more instructions than recorded; RECORD=1 records them.
+# Fails if a step takes more instructions than recorded; RECORD=1 records them.
 count:
 	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN) valgrind
 	cmake --preset bench
@@ -244,7 +253,7 @@ worst:
 	build/bench/bench/bench_worst 50
 	$(PYTHON) bench/worst.py build/bench/bench/bench_worst
 
-# Fails where a step has more loads that wait for stores than recorded; RECORD=1 records them. After count where make runs
+# Fails if a step has more loads that wait for stores than recorded; RECORD=1 records them. After count where make runs
 # both, since they compile one program.
 stalls: $(filter count,$(MAKECMDGOALS))
 	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN) valgrind
@@ -273,20 +282,20 @@ $(VENV)/test $(VENV)/lint $(VENV)/browser $(VENV)/docs: pyproject.toml | $(VENV)
 	$(BIN)/python -m pip install --quiet --no-compile --group $(notdir $@)
 	@touch $@
 
-# What makes distributions and what cross-compiles need no package installed.
+# Tools for distributions and for cross-compilation need no installed package.
 $(VENV)/wheel $(VENV)/macos $(VENV)/packages: pyproject.toml
 	PYTHON=$(PYTHON) tools/venv.sh $(VENV)
 	$(BIN)/python -m pip install --quiet --group $(notdir $@)
 	@touch $@
 
-# Who else is timed from Python, each as far as it is to be had.
+# Peers that are timed from Python, if they are available.
 $(VENV)/bench: pyproject.toml | $(VENV)/package
 	-for peer in pinocchio qp tsid toolbox pink mink; do $(BIN)/python -m pip install --quiet --group bench-$$peer; done
 	@touch $@
 
-# What arms and motions are compared with, as far as it is to be had: tests without their peer are skipped. Of ManipulaPy only
-# the URDFs are read, of those after it the meshes, so what they need is left out; Debian's PyKDL is for a Python of Debian's
-# version.
+# Peers that arms and motions are compared with, if they are available: tests without their peer are skipped. ManipulaPy
+# is read for its URDFs only, and the packages after ManipulaPy for their meshes, so they are installed without
+# dependencies. Debian's PyKDL is for a Python of Debian's version.
 SUFFIX = $(shell $(1) -c 'import sysconfig; print(sysconfig.get_config_var("EXT_SUFFIX"))' 2> /dev/null)
 $(VENV)/peers: pyproject.toml | $(VENV)/package
 	-for group in peers franka; do $(BIN)/python -m pip install --quiet --no-compile --group $$group; done

@@ -2,9 +2,10 @@
 
 Needs example-robot-data and the extra `clearance`; of the presets, those whose meshes are found, which
 tools/preset_capsules.py names. For each arm, over all links with collision geometry: the pairs of capsules that are
-kept apart; the volume of the links' capsules (of their union, by sampling) over that of their convex hulls; how far the
-capsules reach beyond the hulls, max over directions u of h_capsule(u) - h_hull(u), of the median and of the worst link;
-and, to compare, the volume of capsules about trimesh's minimum cylinders. Least for a cube is 2.64 times its volume.
+kept apart; the volume of the links' capsules (of their union, by sampling) over the volume of their convex hulls; how
+far the capsules reach beyond the hulls, max over directions u of h_capsule(u) - h_hull(u), of the median and of the
+worst link; and, to compare, the volume of capsules about trimesh's minimum cylinders. Least for a cube is 2.64 times
+its volume.
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ DIRECTIONS = 4000
 
 
 def solid(shapes: list[Shape], rng: np.random.Generator) -> np.ndarray:
-    """Points whose convex hull is that of the shapes, but for balls, whose surfaces are sampled."""
+    """Points whose convex hull is the convex hull of the shapes, except for balls, whose surfaces are sampled."""
     u = rng.normal(size=(400, 3))
     u /= np.linalg.norm(u, axis=1, keepdims=True)
     balls = [c + r * u for shape in shapes for c, r in zip(shape.centers, shape.radii)]

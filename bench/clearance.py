@@ -18,7 +18,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(dest="command", required=True)
     motions = commands.add_parser("motions", help="random motions straight through table, shelf and post")
-    motions.add_argument("--motions", type=int, default=200, help="of four arms in turn; 10,000 in the full run")
+    motions.add_argument("--motions", type=int, default=200, help="of four arms, alternately; 10,000 in the full run")
     motions.add_argument("--workers", type=int, default=2)
     motions.add_argument("--minutes", type=float, default=60.0, help="stop then")
     commands.add_parser("peers", help="the same targets with Pink and Mink")

@@ -1,4 +1,4 @@
-"""Random motions straight through table, shelf and post, and what meets: `python bench/clearance.py motions`."""
+"""Random motions straight through table, shelf and post, and the contacts: `python bench/clearance.py motions`."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Motion(NamedTuple):
     duration: float
     status: str
     distance: float  # The least of capsules, beyond the margin [m].
-    excess: tuple[float, ...]  # Of each of the joints' bounds, as a share of it; of positions [rad].
+    excess: tuple[float, ...]  # Excess over the joints' bounds, as a share of each bound; of positions [rad].
     checks: int  # Of the meshes,
     contacts: int  # how many met,
     apart: float  # and how far apart they were where the capsules were nearest [m].
@@ -123,7 +123,7 @@ def contacts(check: Check, run: fp.Run) -> int:
 
 
 def motion(name: str, number: int) -> Motion | None:
-    """One of the motions; None where no start is found."""
+    """One of the motions; None if no start is found."""
     made = ROBOTS[name]
     rng = np.random.default_rng([17, NAMES.index(name), number])
     reach = float(sum(np.linalg.norm(joint.placement[:3, 3]) for joint in made.arm.joints[1:]))
@@ -186,7 +186,7 @@ def report(done: dict[str, list[Motion]]) -> list[str]:
 
 
 def run(motions: int, workers: int, minutes: float) -> Iterator[str]:
-    """Makes motions, a share of each arm's in turn, until all are made or the time is over."""
+    """Makes motions, a share for each arm, one after another, until all are made or the time is over."""
     for name in NAMES:
         ROBOTS[name] = robot(name)
     each = -(-motions // len(NAMES))

@@ -1,13 +1,14 @@
 """The same targets for fpbm_cpp, Pink and Mink, on one Panda: `python bench/clearance.py peers`.
 
 One set of capsules on its links, taken from its URDF, one set of pairs, one margin, the joints' ends and velocities the
-same, 1000 ticks a second. fpbm_cpp keeps bounds on acceleration and jerk besides. What became of it is measured alike
-for all, by Coal on the capsules.
+same, 1000 ticks a second. In addition, fpbm_cpp keeps bounds on acceleration and jerk. The motions of all libraries are
+measured in the same manner, by Coal on the capsules.
 
 Pink and Mink have the gains of their own examples: Pink's of kukas_self_collision.py (cost of the frame 50, of the
 posture 1e-3, barrier's gain 20, safe displacement 1), Mink's of arm_ur5e.py (cost 1, Levenberg-Marquardt damping 1,
-damping 1e-3, limit's gain 0.85, which sees shapes at twice the margin). In both, the frame's gain of 1 wants the target
-within a tick; rows with a gain of 0.02 want it as fpbm_cpp does, at 20/s. A tick without an answer holds the arm.
+damping 1e-3, limit's gain 0.85, which includes shapes within twice the margin). In both, the frame's gain of 1 requires
+the target within a tick; rows with a gain of 0.02 have the gain of fpbm_cpp, 20/s. A tick without an answer holds the
+arm.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ class Motion(NamedTuple):
     time: float  # Median of a tick, of the processor [µs].
 
 
-# What one tick does: the next posture and how it went, of x, xd, xdd.
+# One tick: from x, xd and xdd to the next posture, and whether the tick succeeded.
 Step = Callable[[Array, Array, Array], tuple[Array, bool]]
 
 

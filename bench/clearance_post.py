@@ -1,9 +1,9 @@
 """A post that crosses a Panda's work space in MuJoCo, which counts contacts: `python bench/clearance.py post`.
 
 The arm holds its tip where it is. It is led by the tracker's positions and velocities, a thousand times a second, by a
-computed torque. The post is vertical, goes straight at one speed, through a point of the forearm or the hand, and is
-no obstacle to itself: nothing stops it. The tracker is told where it is and how fast, at each tick. Posts whose way
-comes nearer to the arm's first axis than COLUMN are left out: the two links there can go nowhere.
+computed torque. The post is vertical, moves straight at one speed through a point of the forearm or the hand, and
+nothing stops it. The tracker is told where it is and how fast, at each tick. Posts whose path is nearer to the arm's
+first axis than COLUMN are left out: the two links there cannot move away.
 """
 
 from __future__ import annotations
@@ -27,19 +27,19 @@ READY = np.array([0.0, -0.7854, 0.0, -2.3562, 0.0, 1.5708, 0.7854])
 MARGIN = 0.02
 RADIUS, HEIGHT = 0.04, 1.1
 COLUMN = 0.25  # [m]
-FAR = 0.95  # Where a post starts and ends, from where it is nearest to the axis [m].
-STIFFNESS, DAMPING = 2500.0, 100.0  # Of the errors' accelerations [1/s²], [1/s].
+FAR = 0.95  # Distance of a post's start and end from its nearest point to the axis [m].
+STIFFNESS, DAMPING = 2500.0, 100.0  # Feedback gains on position [1/s²] and velocity [1/s].
 
-MADE: dict[str, Any] = {}  # Before workers are forked, which share it.
+MADE: dict[str, Any] = {}  # Filled before workers are forked, which share it.
 
 
 class Crossing(NamedTuple):
     speed: float
     touched: int  # Ticks with a contact of the post and the arm.
-    deepest: float  # Least distance that MuJoCo saw in these [m], 0 without any.
+    deepest: float  # Smallest distance that MuJoCo measured in these [m], 0 without any.
     distance: float  # Least distance of the tracker's capsules from one another and from the post [m].
-    lag: float  # Of the arm behind the tracker, at most [rad].
-    error: float  # Of the tip, at the end [m].
+    lag: float  # Largest lag of the arm behind the tracker [rad].
+    error: float  # Error of the tip at the end [m].
 
 
 def model_of(name: str, capsule_radius: float) -> Any:
@@ -95,7 +95,7 @@ def crossing(task: tuple[float, int, bool]) -> Crossing:
 
     clearance = replace(made.clearance, obstacles=[post(foot)], margin=MARGIN)
     scheme = fp.FPBM(0.6, np.ones(7), 20, 100, null_damping=2)
-    options = {"clearance": clearance if guarded else None, "stall_time": math.inf}  # It goes back behind the post.
+    options = {"clearance": clearance if guarded else None, "stall_time": math.inf}  # The tip returns behind the post.
     tracker = fp.Tracker(made.arm, scheme, READY, limits=made.limits, **options)
     model, target = MADE["model"], tracker.tip
     data = mujoco.MjData(model)

@@ -1,4 +1,4 @@
-"""Arms with what they keep clear of, and the same arms' collision meshes as Coal sees them, for bench/clearance.py."""
+"""Arms with their clearances, and the same arms' collision meshes for Coal, for bench/clearance.py."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from fpbm_cpp.obstacle import Obstacle
 Array = NDArray[np.float64]
 
 MARGIN = 0.01
-JERK = 500.0  # Times the acceleration, where a maker gives none; as Franka has it.
+JERK = 500.0  # Times the acceleration, if a maker gives no jerk; the ratio is Franka's.
 UP = np.array([0.0, 0.0, 1.0])
 NAMES = ("panda", "iiwa14", "gen3", "ur5e")
 
@@ -30,7 +30,7 @@ class Robot(NamedTuple):
     name: str
     arm: fp.SerialArm
     limits: fp.JointLimits
-    clearance: fp.Clearance  # Of the arm by itself.
+    clearance: fp.Clearance  # Clearance of the arm by itself.
     meshes: Meshes
 
 
@@ -41,7 +41,7 @@ class Meshes:
         import pinocchio as pin
 
         self.pin = pin
-        # Of a joint without ends Pinocchio's position is a point on a circle: here it is an angle.
+        # For a continuous joint, Pinocchio's position is a point on a circle: here it is an angle.
         model = pin.buildModelFromUrdf(str(urdf))
         held = [i for i in range(1, model.njoints) if model.names[i] not in arm.joint_names]
         geometry = pin.buildGeomFromUrdf(model, str(urdf), pin.GeometryType.COLLISION)

@@ -1,7 +1,7 @@
 """Instructions a call of each job in count.cpp, by callgrind: the same on a busy machine as on an idle one.
 
 The mean of all calls, the usual call (the median) and the worst. Means are compared with those in instructions.json,
-where the compiler is one that they were recorded with. Fails where one has grown by more than 5 %.
+where the compiler is one that they were recorded with. Fails if one has grown by more than 5 %.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ RECORD = Path(__file__).with_name("instructions.json")
 
 
 class Count(NamedTuple):
-    """Of a job's calls."""
+    """Instructions of a job's calls."""
 
     mean: float
     usual: float
@@ -43,7 +43,7 @@ def count(program: Path) -> dict[str, Count]:
             total = re.search(r"^totals: (\d+)$", text, re.MULTILINE)
             if job and total:
                 calls.setdefault(job[1], []).append(int(total[1]))
-    nothing = median(calls.pop("nothing"))  # What counting itself takes.
+    nothing = median(calls.pop("nothing"))  # Instructions of the counting itself.
     return {
         job: Count(round(fmean(each) - nothing, 1), median(each) - nothing, max(each) - nothing)
         for job, each in sorted(calls.items())
@@ -61,7 +61,7 @@ def recorded() -> dict[str, dict[str, float]]:
 
 
 def grown(counts: dict[str, float], record: dict[str, float]) -> list[str]:
-    """What is to be said of the jobs whose counts have grown too much, or that are in only one of the two."""
+    """Messages on the jobs whose counts have grown too much, or that are in only one of the two."""
     lines = [f"{job} is new: record it" for job in counts.keys() - record.keys()]
     lines += [f"{job} is recorded, but not counted any more" for job in record.keys() - counts.keys()]
     for job in counts.keys() & record.keys():
@@ -93,9 +93,8 @@ def main() -> None:
         sys.exit("\n".join([*lines, "If that is meant: make count RECORD=1"]))
     else:
         changes = [counts[job] / record[compiler][job] - 1 for job in counts]
-        print(
-            f"{len(counts)} instruction counts against those of {compiler}: {min(changes):+.1%} to {max(changes):+.1%}"
-        )
+        least, most = min(changes), max(changes)
+        print(f"{len(counts)} instruction counts compared with the record of {compiler}: {least:+.1%} to {most:+.1%}")
 
 
 if __name__ == "__main__":

@@ -87,10 +87,10 @@ class ObjectPath {
 /// Results of a motion.
 struct Motion {
   double grasp = 0;              ///< Largest difference of the relative pose [m or rad].
-  std::array<double, 5> excess;  ///< Of q [rad]; of Δq, Δ²q, Δ³q and Δ²q̇ relative to the bounds.
+  std::array<double, 5> excess;  ///< Excess of q [rad]; of Δq, Δ²q, Δ³q and Δ²q̇ relative to the bounds.
   bool both_saturated = false;   ///< Bounds were active on joints of both arms.
   bool at_rest = true;
-  double time = 0;  ///< Of all ticks [ns].
+  double time = 0;  ///< Total time of all ticks [ns].
 };
 
 Motion run(std::uint64_t seed, bool stops) {

@@ -7,7 +7,7 @@ installed are listed.
 
 The peers minimise weighted squares: the relative pose has the cost 100 and the object 1 (Pink, Mink, roboplan), or is
 an equality (PlaCo). They get the object's pose a tick ahead. With a gain of 1, their default,
-the object's error is to vanish in one tick; with 0.02, at 20/s. fpbm_cpp bounds accelerations and jerks as well.
+the object's error is to vanish in one tick; with 0.02, at 20/s. fpbm_cpp also bounds accelerations and jerks.
 """
 
 from __future__ import annotations

@@ -26,10 +26,10 @@ DT = 1e-3
 TICKS, MOVE, MOVES, HOLD = 3000, 600, 4, 1000
 HOME = np.array([0.0, -0.6, 0.0, -2.4, 0.0, 1.8, 0.785])
 PLACES = {"right": -0.4, "left": 0.4}  # Along y [m].
-# Costs of the relative pose, of the object's pose and of the posture: those of the object and the posture as in Pink's
-# and Mink's examples. Their squares are in the programs.
+# Costs of the relative pose, of the object's pose and of the posture: the costs of the object and the posture as in
+# Pink's and Mink's examples. Their squares are in the programs.
 COSTS = (100.0, 1.0, 1e-3)
-TOLERANCE = 1e-10  # Of quadratic programs, as in bench/stack_solvers.py.
+TOLERANCE = 1e-10  # Tolerance of quadratic programs, as in bench/stack_solvers.py.
 
 
 class Random:
@@ -77,7 +77,7 @@ def origin(frame: Array) -> str:
 
 
 def placed(side: str, i: int) -> Array:
-    """Placement of an arm's joint i in that of the joint before; of the tip, for i = 7."""
+    """Placement of an arm's joint i in the frame of the previous joint; of the tip, for i = 7."""
     arm = fp.SerialArm.preset("panda")
     frame = np.array(arm.joints[i].placement if i < arm.dof else arm.tip)
     frame[1, 3] += PLACES[side] if i == 0 else 0.0
@@ -332,7 +332,7 @@ def partly(now: Array, target: Array, gain: float) -> Array:
 
 
 def excess(limits: fp.JointLimits, q: Array) -> list[float]:
-    """Of positions [rad]; of velocities and accelerations as shares of the bounds, by differences of q."""
+    """Excess of positions [rad]; of velocities and accelerations as shares of the bounds, by differences of q."""
     shares = [
         float((np.abs(np.diff(q, k, axis=0)) / DT**k / bound).max() - 1)
         for k, bound in ((1, limits.velocity), (2, limits.acceleration))

@@ -1,4 +1,4 @@
-"""What is promised of the results, and whether it holds."""
+"""The promises on the results, and whether they hold."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from report import Results
 
 PEERS = {"pinocchio": "Pinocchio + Eigen", "kdl": "KDL + Eigen"}
-# What promises are measured against that is no longer in the tree, 8e7cfab. Its Panda pose step of FPBM took 0.25 of
+# Reference of promises that is no longer in the tree, 8e7cfab. Its Panda pose step of FPBM took 0.25 of
 # Pinocchio + Eigen's on a quiet machine (0.28 in its own results, on a busy one); bench/README.md says how it stands in
 # for the time. Instructions of its tick, by g++ 12; limited ticks were first counted at 02cf2e0.
 OLD_STEP = 0.25
@@ -28,7 +28,7 @@ def instructions(results: Results, job: str) -> float | None:
 
 
 def rows(results: Results) -> list[list[str]]:
-    """What is promised, what was measured, the bar, and whether it holds."""
+    """The promise, the measured value, the bar, and whether the promise holds."""
     lines: list[list[str]] = []
 
     def add(what: str, value: float | None, bar: float, text: str, at_least: bool = False) -> None:

@@ -1,9 +1,9 @@
 """A step of each scheme from Python: fpbm_cpp against Pinocchio, the Robotics Toolbox, Pink and Mink, where installed.
 
-Peers that have no such schemes get them from NumPy, on their own kinematics, with solves in place of the
-paper's pseudoinverses; their answers agree with fpbm_cpp's to 1e-9 before any is timed. Pink and Mink solve a quadratic
-program for the tip alone, without limits: their targets are small shifts, for which that is MVN with feedback to 1e-3.
-Rounds of all rows alternate, each round in another order.
+Peers without these schemes get them from NumPy, on their own kinematics, with solves instead of the paper's
+pseudoinverses; their answers agree with fpbm_cpp's to 1e-9 before any is timed. Pink and Mink solve a quadratic program
+for the tip alone, without limits: their targets are small shifts, for which that is MVN with feedback to 1e-3. Rounds
+of all rows alternate, each round in another order.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Input(NamedTuple):
     xdd: Array
 
 
-# Pose of the tip, J and Jd at (q, qd); Jd is None unless it is asked for.
+# Pose of the tip, J and Jd at (q, qd); Jd is None unless it is requested.
 Kinematics = Callable[[Array, Array, bool], tuple[Array, Array, Any]]
 
 
@@ -254,7 +254,7 @@ MODULES = {"pin": "pinocchio", "roboticstoolbox-python": "roboticstoolbox", "pin
 
 
 def version(package: str) -> str:
-    """Empty where it is not installed, or does not work here."""
+    """Empty if it is not installed, or does not work here."""
     try:
         importlib.import_module(MODULES.get(package, package))
         return metadata.version(package)

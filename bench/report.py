@@ -73,7 +73,7 @@ class Results:
         self.rows: dict[str, Row] = {row["name"]: row for name in sections for row in values.get(name, [])}
         for row in values.get("limited", []):
             part, case = row["name"].split("/", 1)
-            if part == "limited":  # What limits add to a step.
+            if part == "limited":  # Cost of limits in a step.
                 least = row["least"] - self.rows[f"unlimited/{case}"]["least"]
                 self.rows[f"limits/{case}"] = {"name": f"limits/{case}", "least": least}
         self.tails: list[Row] = values.get("tail", [])
@@ -85,7 +85,7 @@ class Results:
         return row["least"] if row else None
 
     def ratio(self, name: str, peer: str, library: str = "fpbm_cpp") -> float | None:
-        """Of a row's time by a library to that by a peer."""
+        """Ratio of a row's time by a library to the time by a peer."""
         ours, theirs = self.least(f"{name}/{library}"), self.least(f"{name}/{peer}")
         return ours / theirs if ours and theirs else None
 
@@ -112,12 +112,12 @@ def comparison(
 
 
 def summary(results: Results) -> list[str]:
-    """The rows that the project's README shows, with what they were measured on."""
+    """The rows that the project's README shows, with the machine on which they were measured."""
     steps = ["planar4/position/fpbm", "panda/position/fpbm", "panda/pose/fpbm", "panda/pose/wmvn", "panda/pose/mvn"]
     lines = ["A step in C++: kinematics and scheme.", "", *comparison(results, "step", CPLUSPLUS, steps)]
     if results.values.get("limited"):
         rows = ["panda/pose/acceleration", "panda/pose/jerk", "panda/position/acceleration"]
-        lines += ["The same within joint limits, in states where they are met.", ""]
+        lines += ["The same with joint limits, in states with active limits.", ""]
         lines += comparison(results, "limited", LIMITED, rows, kind="bounds")
     if results.values.get("python"):
         calls = ["panda/pose/fpbm", "panda/pose/mvn"]
@@ -162,7 +162,7 @@ def tails(results: Results) -> list[str]:
 
 
 def over_median(results: Results) -> list[str]:
-    """How far p99.9 is above p50, for a job and for an empty call that takes as long, timed in turn with it."""
+    """How far p99.9 is above p50, for a job and for an empty call that takes as long, timed alternately with it."""
 
     def cells(row: Row) -> list[str]:
         job, empty = row["p99.9"] / row["p50"], row["empty_p99.9"] / row["empty_p50"]
@@ -257,7 +257,7 @@ def limited(results: Results) -> list[str]:
             counts = (str(row[key]) for key in columns)
             scores.append([f"{', '.join(case)}: {LIMITED[library]}", *counts])
     return [
-        "Kinematics, scheme and limits, in random states whose scheme asks for more than the limits allow:",
+        "Kinematics, scheme and limits, in random states whose scheme requires more than the limits allow:",
         "",
         *comparison(results, "limited", LIMITED, kind="bounds"),
         "The limits alone: the difference to the same step without them.",
@@ -291,7 +291,7 @@ def page(results: Results) -> str:
     lines = ["# Benchmark results", ""]
     if values["quick"]:
         lines += ["By a quick run: figures are rough.", ""]
-    lines += ["How to read them, and what is not measured: [bench/README.md](../README.md).", "", *summary(results)]
+    lines += ["Definitions, and limits of the measurements: [bench/README.md](../README.md).", "", *summary(results)]
     lines += [
         "![Steps of each library, tails, growth with n, sweeps](results.png)",
         "",
@@ -444,7 +444,7 @@ def write_readme(folder: Path) -> None:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--readme", action="store_true", help="write the summary into the project's README as well")
+    parser.add_argument("--readme", action="store_true", help="also write the summary into the project's README")
     options = parser.parse_args()
     write(RESULTS)
     if options.readme:

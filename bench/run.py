@@ -1,6 +1,6 @@
-"""Runs every benchmark that has been built or installed, and puts what they say together in bench/results.
+"""Runs every benchmark that has been built or installed, and collects their output in bench/results.
 
-What is not there is listed as missing, and nothing else is the worse for it.
+Missing benchmarks are listed as missing, and all others are run.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ RESULTS = HERE / "results"
 # Programs of Google Benchmark, a section of the report each; one of 20 repetitions of a row takes SECONDS.
 PROGRAMS = ("step", "limited", "parts", "loop", "growth", "trees", "ticks")
 SECONDS = 0.02
-# What bench_limited says of 10,000 answers.
+# The output of bench_limited on 10,000 answers.
 SCORES = ("slowed", "unsolved", "outside", "off_line", "smaller", "larger")
 LATEST = "out.json"
 
@@ -55,7 +55,7 @@ def machine() -> dict[str, Any]:
 
 
 def isolated_core() -> int | None:
-    """One that the system was started to leave alone (isolcpus=…)."""
+    """A processor that the system leaves idle (isolcpus=…)."""
     try:
         cores = Path("/sys/devices/system/cpu/isolated").read_text().strip()
     except OSError:
@@ -81,7 +81,7 @@ def kept_to(core: int | None) -> Iterator[None]:
 
 
 def call(program: Path, *arguments: str | Path) -> bytes:
-    """What a program prints. One that fails stops all; it has said why."""
+    """The output of a program. A failure stops all programs; the failed program has printed the reason."""
     print(f"running {program.name}", flush=True)
     command = [sys.executable, program] if program.suffix == ".py" else [program]
     run = subprocess.run([*command, *arguments], stdout=subprocess.PIPE, check=False)
@@ -105,7 +105,7 @@ def google_benchmark(program: Path, quick: bool) -> list[dict[str, Any]]:
     for run in sorted(json.loads(out.read_text())["benchmarks"], key=lambda run: run["family_index"]):
         if run["run_type"] == "iteration":
             runs.setdefault(run["run_name"], []).append(run)
-    # Time on the processor leaves out what others took of it.
+    # Processor time leaves out the time of other programs.
     return [
         summary(name, [run["cpu_time"] for run in rounds])
         | {score: int(rounds[0][score]) for score in SCORES if score in rounds[0]}

@@ -51,7 +51,7 @@ class Environment:
 
 
 def cpp(work: Path, rounds: int, passes: int) -> tuple[dict[str, Any], str]:
-    """What bench_stack prints, and versions."""
+    """The output of bench_stack, and versions."""
     wheels = Environment(work / "cpp", CPP_PACKAGES)
     build = work / "build"
     prefix = f"-DFPBM_PINOCCHIO={wheels.packages / 'cmeel.prefix'}"
@@ -64,7 +64,7 @@ def cpp(work: Path, rounds: int, passes: int) -> tuple[dict[str, Any], str]:
 
 
 def python(work: Path, name: str) -> tuple[dict[str, Any], str]:
-    """What a peer did beside this library, and its versions."""
+    """The results of a peer and of this library, and its versions."""
     packages = PEERS[name].packages
     peer = Environment(work / name.lower(), packages)
     printed = call(peer.python, HERE / "stack_worker.py", name, env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"})
@@ -220,7 +220,7 @@ def main() -> None:
     head = [
         "# A stack of tasks beside peers",
         "",
-        "Written by `python bench/stack_peers.py`; what is compared: [README](../README.md#stacks).",
+        "Written by `python bench/stack_peers.py`; compared quantities: [README](../README.md#stacks).",
         f"{processor()}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}, Python {platform.python_version()}.",
         "",
         *(f"- {version}" for version in versions),

@@ -20,17 +20,17 @@ import fpbm_cpp as fp
 Array = NDArray[np.float64]
 
 DT = 1e-3
-GAIN = 10.0  # Of tip and elbow [1/s].
+GAIN = 10.0  # Gain of tip and elbow [1/s].
 POSTURE_GAIN = 1.0
 START = np.array([0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785])
 ELBOW = 4
 
-# Weights of tip, elbow and posture: that of the tip is the default of Pink and Mink, that of the posture the value in
-# the examples of both, and that of the elbow between. Their squares are in the costs.
+# Weights of tip, elbow and posture: the weight of the tip is the default of Pink and Mink, the weight of the posture
+# the value in the examples of both, and the weight of the elbow between. Their squares are in the costs.
 WEIGHTS = (1.0, 0.1, 1e-3)
 
-# Of quadratic programs of Pink and Mink. The defaults are 1e-6, of a displacement: in a tick of 1 ms 1e-3 rad/s, and
-# 1 rad/s². roboplan has its default of 1e-6: with 1e-8, its motion of 20 s did not end in 50 s.
+# Tolerance of the quadratic programs of Pink and Mink. The defaults are 1e-6, of a displacement: in a tick of 1 ms 1e-3
+# rad/s, and 1 rad/s². roboplan has its default of 1e-6: with 1e-8, its motion of 20 s did not end in 50 s.
 TOLERANCE = 1e-10
 
 
@@ -292,7 +292,7 @@ class Roboplan:
 
 
 class Peer(NamedTuple):
-    packages: tuple[str, ...]  # To install; the version is that of the first.
+    packages: tuple[str, ...]  # Packages to install; the version is the version of the first.
     make: Callable[[Panda, Options], Solver]
 
 
@@ -311,5 +311,5 @@ def ours(robot: Panda, level: str) -> fp.Tracker:
     posture = fp.PostureTask(START, k=POSTURE_GAIN, k1=2 * POSTURE_GAIN, k2=POSTURE_GAIN**2)
     scheme = fp.MVN() if level == "velocity" else fp.Balanced(0.6, np.ones(7), null_damping=2)
     stack = fp.Stack(tip, elbow, posture)
-    # A larger bound on errors than any error: the peers have no such bound.
+    # A larger bound on errors than any error: the peers have no bound on errors.
     return fp.Tracker(robot.arm, scheme, START, stack=stack, limits=robot.limits, error_bound=10.0)

@@ -18,7 +18,7 @@ import fpbm_cpp as fp
 
 TICKS = 20_000
 BLOCK = 100  # Ticks of which a ratio of times is taken.
-TOLERANCE = 5e-3  # Of the tip's motion in a tick, relative: peers move along its tangent.
+TOLERANCE = 5e-3  # Relative tolerance of the tip's motion in a tick: peers move along its tangent.
 
 
 class Reference(NamedTuple):
@@ -97,7 +97,7 @@ def ahead(arm: fp.SerialArm, q: Array, now: Reference, after: Reference) -> Targ
 
 
 class Motion:
-    """A Panda under a solver, and what it does."""
+    """A Panda under a solver, and its motion."""
 
     def __init__(self, robot: Panda) -> None:
         self.robot = robot
@@ -133,7 +133,7 @@ def blocks(times: list[float]) -> Array:
 
 
 def run(robot: Panda, solver: Solver) -> tuple[list[dict[str, Any]], list[float]]:
-    """A peer and this library at both levels: what they did, and the ratios of the peer's times to this library's."""
+    """A peer and this library at both levels: their results, and the ratios of the peer's times to this library's."""
     path = Path(robot.arm)
     trackers = [ours(robot, "velocity"), ours(robot, "acceleration")]
     motions = [Motion(robot) for _ in range(3)]

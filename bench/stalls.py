@@ -1,11 +1,11 @@
 """Loads that wait for stores, a call of each job: store-forwarding stalls, found in a trace of memory by lackey.
 
-A load of bytes that are still in the processor's store buffer gets them from there at once only where one store wrote
-all of them. Where two did, or one of them and the memory before it, it waits until the stores are done: a dozen cycles
-or so. A usual cause is a 16-byte load of two numbers that were stored one by one. The trace has every address, so that
-nothing is guessed; the counts do not depend on the machine's load.
+A load of bytes that are still in the processor's store buffer gets them from there without a stall only if one store
+wrote all of them. Where two did, or one of them and the memory before it, it waits until the stores are done: a dozen
+cycles or so. A usual cause is a 16-byte load of two numbers that were stored one by one. The trace has every address,
+so that nothing is guessed; the counts do not depend on the machine's load.
 
-Compared with stalls.json, where the compiler is one that they were recorded with. Fails where a job has more than
+Compared with stalls.json, where the compiler is one that they were recorded with. Fails if a job has more than
 recorded.
 """
 

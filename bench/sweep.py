@@ -3,7 +3,7 @@ without limits and within its own.
 
 An arm-step is an RK4 step of 1 ms of one motion, four evaluations of the closed loop. Lanes are chosen when the package
 is imported, so that each kind has a process of its own; rounds of the kinds alternate. "none" is the code for every
-processor. It is timed on fewer motions, as what it does in a second does not depend on their number.
+processor. It is timed on fewer motions, since its motions per second do not depend on their number.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ WORKERS, ROUNDS, DT = (1, 2), 3, 1e-3
 FEWER, FEWEST = 10, 64  # Motions without lanes, a share; in any case, for threads to share evenly.
 PAPER = "planar4/position"
 CHECKED, TOLERANCE = 32, 1e-9
-SCATTER = 0.01  # Of starts [rad]: little enough that every motion stays within reach.
+SCATTER = 0.01  # Spread of the starts [rad]: so small that every motion stays within the workspace.
 
 
 class Case(NamedTuple):
@@ -39,7 +39,7 @@ class Case(NamedTuple):
     scheme: fp.Scheme
     q0: NDArray[np.float64]
     task: str
-    share: float  # Of the number of motions.
+    share: float  # Fraction of the number of motions.
     limits: fp.JointLimits | None = None
 
 
@@ -100,7 +100,7 @@ def measured_in(kind: str, motions: int) -> list[dict[str, Any]]:
 
 
 def table(runs: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The best round of each row, and its multiple of what one thread does without lanes."""
+    """The best round of each row, and its multiple of the rate of one thread without lanes."""
     best: dict[tuple[str, str, int], dict[str, Any]] = {}
     for run in runs:
         key = run["name"], run["lanes"], run["workers"]

@@ -5,7 +5,7 @@
 
 #include "cases.hpp"
 
-// The schemes on a peer's kinematics, in typical Eigen code: fixed sizes, Cholesky factorisations in place of the
+// The schemes on a peer's kinematics, in typical Eigen code: fixed sizes, Cholesky factorisations instead of the
 // paper's pseudoinverses.
 namespace bench {
 

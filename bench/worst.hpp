@@ -19,7 +19,7 @@ namespace bench {
 using Numbers = std::vector<double>;
 
 constexpr int kPhases = 6;
-constexpr int kPhaseNumbers = 13;  ///< Of a phase: displacement, rotation, their rates, duration.
+constexpr int kPhaseNumbers = 13;  ///< Numbers of a phase: displacement, rotation, their rates, duration.
 constexpr double kFar = 0.8;       ///< Largest displacement along each axis [m].
 constexpr double kTurn = 1.5;      ///< Largest rotation about each axis [rad].
 constexpr double kFast = 1.5;      ///< Largest rate along or about each axis [m/s, rad/s].
@@ -202,7 +202,7 @@ struct Found {
   int tick = 0;
 };
 
-/// The motion of a case in a file with lines "name tick numbers". Without numbers if the file has no such line.
+/// The motion of a case in a file with lines "name tick numbers". Without numbers if the file does not have the line.
 inline Found found_in(const std::string& file, const std::string& name) {
   std::ifstream lines(file);
   for (std::string line; std::getline(lines, line);) {

@@ -1,6 +1,6 @@
 """Instructions of the longest ticks that search_worst.cpp has found, by callgrind, and of ticks without active bounds.
 
-Fails where a longest tick takes more than its share of free ticks.
+Fails if a longest tick takes more than its share of free ticks.
 """
 
 from __future__ import annotations

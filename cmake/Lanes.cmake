@@ -1,6 +1,6 @@
 # Whether code in a processor's lanes can be compiled (FPBM_HAS_SIMD), and for x86-64 (FPBM_HAS_LANES), with which options
-# for each kind of those processors. Some standard libraries have the header and little in it, so what the lanes need of
-# it is tried.
+# for each kind of those processors. Some standard libraries have the header and little in it, so a program tries the
+# functions that the lanes need.
 include(CheckCXXCompilerFlag)
 include(CheckCXXSourceCompiles)
 set(CMAKE_REQUIRED_FLAGS ${CMAKE_CXX17_STANDARD_COMPILE_OPTION})

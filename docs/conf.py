@@ -29,7 +29,7 @@ html_title = f"fpbm_cpp {release}"
 html_static_path = ["static"]
 html_css_files = ["wide.css"]
 
-highlight_language = "none"  # Unless a block says otherwise: what programs print is in no language.
+highlight_language = "none"  # Default for blocks without a language: output of programs.
 
 # Pages read the same on GitHub: $…$, ```math, links to headings.
 myst_enable_extensions = ["dollarmath"]

@@ -190,8 +190,8 @@ def report(motion: Motion) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description="A circle, then targets that come as they can, through libfranka.")
-    parser.add_argument("--robot", metavar="ADDRESS", help="a real robot, in place of a simulated one")
+    parser = argparse.ArgumentParser(description="A circle, then targets at irregular times, through libfranka.")
+    parser.add_argument("--robot", metavar="ADDRESS", help="a real robot instead of a simulated robot")
     address = parser.parse_args().robot
     signal.signal(signal.SIGINT, lambda *_: interrupted.set())
     if address is not None:

@@ -8,7 +8,7 @@
 using Joints = fpbm::Vector<7>;
 using Clearance = fpbm::Clearance<7>;
 
-/// Draws the line and avoids the shapes of `kept`. Prints and returns the smallest distance of those of `measured`.
+/// Draws the line and avoids the shapes of `kept`. Prints and returns the smallest distance in `measured`.
 double run(const char* name, const Clearance& kept, Clearance measured) {
   const fpbm::SerialArm<7> arm(fpbm::presets::panda());
   const Joints q0{0.0, -0.7854, 0.0, -2.3562, 0.0, 1.5708, 0.7854}, rest = Joints::Zero();  // [rad]
@@ -40,6 +40,6 @@ int main() {
   const Clearance clearance(panda, capsules, around, 0.01, fpbm::presets::never_collide::panda());  // margin [m]
   const Clearance nothing(panda, {}, {}, 0.0);
 
-  run("as asked for", nothing, clearance);
+  run("no clearance", nothing, clearance);
   return run("kept clear", clearance, clearance) >= 0.01 - 1e-9 ? 0 : 1;
 }

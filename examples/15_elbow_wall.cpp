@@ -48,8 +48,8 @@ int main() {
   }
   const auto [a, place, q] = tracker.tip();
   std::printf(
-      "tilt at most %.0e rad; levels slowed in %d ticks; place off by %.2f m behind the wall, by %.0e m after the way "
-      "back\n",
+      "tilt at most %.0e rad; levels slowed in %d ticks; place off by %.2f m behind the wall, by %.0e m after the "
+      "return\n",
       tilt, slowed, off, (start - place).norm());
   return fpbm::failed(status) ? 1 : 0;
 }

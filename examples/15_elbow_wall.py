@@ -25,4 +25,4 @@ for i in range(12000):
 print(
     f"tilt at most {tilt:.0e} rad; levels slowed in {blocked} ticks; place off by {off:.2f} m behind the wall, ", end=""
 )
-print(f"by {np.linalg.norm(tick.errors['place']):.0e} m after the way back")
+print(f"by {np.linalg.norm(tick.errors['place']):.0e} m after the return")

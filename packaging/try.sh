@@ -1,7 +1,6 @@
 #!/bin/sh
-# Tries the recipes offline, on an archive of these sources in place of the release's: Conan's, with a conan in the PATH, and
-# vcpkg's where VCPKG_ROOT names a clone of it. Eigen is the system's.
-# usage: try.sh <scratch dir>
+# Tries the recipes offline, on an archive of these sources instead of the release's archive: Conan's, with a conan in
+# the PATH, and vcpkg's where VCPKG_ROOT names a clone of it. Eigen is the system's. usage: try.sh <scratch dir>
 set -eu
 mkdir -p "$1"
 scratch=$(cd "$1" && pwd)

@@ -1,7 +1,7 @@
 #!/bin/sh
-# Runs the port's portfile by vcpkg's own scripts, and builds a program with what it installs. The program vcpkg is not needed:
-# the little that the scripts ask of it is done here.
-# usage: try_vcpkg.sh <clone of vcpkg> <port> <archive of the release> <owner> <version> <program's project> <scratch dir>
+# Runs the port's portfile by vcpkg's own scripts, and builds a program with the installed files. The program vcpkg is
+# not needed: the little that the scripts ask of it is done here. usage: try_vcpkg.sh <clone of vcpkg> <port> <archive
+# of the release> <owner> <version> <program's project> <scratch dir>
 set -eu
 vcpkg=$1 port=$2 archive=$3 owner=$4 version=$5 program=$6 scratch=$7
 triplet=x64-linux
@@ -29,7 +29,7 @@ VCPKG_COMMAND=$scratch/vcpkg VCPKG_FORCE_SYSTEM_BINARIES=1 cmake -DCMD=BUILD -DP
     "-DVCPKG_PORT_CONFIGS=$vcpkg/ports/vcpkg-cmake/vcpkg-port-config.cmake;$vcpkg/ports/vcpkg-cmake-config/vcpkg-port-config.cmake" \
     -P "$vcpkg/scripts/ports.cmake"
 
-# As the registry wants it.
+# In the format of the registry.
 fail() {
     echo "$*:" >&2
     find "$package" -type f -not -path '*/include/*' >&2

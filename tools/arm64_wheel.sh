@@ -2,8 +2,8 @@
 # Builds the package's wheel for 64-bit Arm into FOLDER/dist, and runs tests of it under qemu.
 #   PYTHON=… arm64_wheel.sh FOLDER [arguments of pytest], with a Python that has pip
 #
-# Debian's Python for Arm is unpacked into FOLDER/root, and run there by qemu: nothing of this system is changed. What it
-# starts itself, CMake and the cross compiler, runs at full speed.
+# Debian's Python for Arm is unpacked into FOLDER/root, and run there by qemu: nothing of this system is changed. CMake
+# and the cross compiler, which it starts, run at full speed.
 set -eu
 mkdir -p "$1"
 folder=$(cd "$1" && pwd)
@@ -25,7 +25,7 @@ if ! test -x "$python"; then
     get update
     get install --yes --download-only --no-install-recommends python3 python3-distutils libpython3-dev libstdc++6 > /dev/null
     for package in "$apt"/cache/archives/*.deb; do dpkg -x "$package" "$root"; done
-    # By its name Python knows where it lies, and how it is to be started again.
+    # From its name, Python finds its folder, and the command to start it again.
     cat > "$python" << RUN
 #!/bin/sh
 exec qemu-aarch64 -L '$root' -0 "\$0" '$root/usr/bin/python3' "\$@"

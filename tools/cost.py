@@ -1,10 +1,10 @@
-"""Runs a command, and prints the time and the memory that it takes beside what is promised.
+"""Runs a command, and prints the time and the memory that it takes, with the promised limits.
 
     cost.py [--seconds S] [--processor S] [--megabytes MB] [--largest MB] COMMAND ...
 
---seconds is the time by the clock, --processor the processor time of all processes, and --megabytes what all processes
-of the command together hold, looked at five times a second (Linux only). They depend on the load of the machine and
-are only printed. --largest is the memory of the largest process: cost.py fails if it is above what is promised.
+--seconds is the time by the clock, --processor the processor time of all processes, and --megabytes the memory of all
+processes of the command together, measured five times a second (Linux only). They depend on the load of the machine and
+are only printed. --largest is the memory of the largest process: cost.py fails if it is above the promised limit.
 """
 
 import argparse
@@ -17,7 +17,7 @@ from pathlib import Path
 
 
 def memory(root: int) -> float:
-    """What a process and all below it hold [MB]."""
+    """Memory of a process and all its descendants [MB]."""
     children, held = defaultdict(list), {}
     for entry in Path("/proc").glob("[0-9]*"):
         try:

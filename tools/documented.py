@@ -1,4 +1,4 @@
-"""Checks that what README.md and docs/ name exists: files, folders, links, tests and targets of make."""
+"""Checks that the names in README.md and docs/ exist: files, folders, links, tests and targets of make."""
 
 import re
 import subprocess

@@ -102,13 +102,13 @@ class Robot(NamedTuple):
     """The links of a preset by the URDF file of its meshes."""
 
     capsules: list[Capsule]  # In the frames of the file's joints.
-    poses: NDArray[np.float64]  # Of these frames in those of the preset's joints, the base first.
-    off: NDArray[np.float64]  # How far each of these poses is off, at most [m].
+    poses: NDArray[np.float64]  # Positions of these frames in the frames of the preset's joints, the base first.
+    off: NDArray[np.float64]  # Largest deviation of each of these poses [m].
     turned: NDArray[np.float64]  # And turned [rad].
 
 
 def version(source: Source) -> str:
-    """Of the package that has the meshes."""
+    """Name of the package that has the meshes."""
     if source.ros is not None:
         file = find_mesh(located(source.package, source.urdf), f"package://{source.ros}/package.xml")
         found = re.search("<version>(.*)</version>", file.read_text() if file else "")
@@ -122,7 +122,7 @@ def located(package: str, place: str) -> Path:
 
 
 def frames(arm: SerialArm, q: Sequence[float]) -> Iterator[Frame]:
-    """Of the base and of each joint after its motion, in the base frame."""
+    """Frames of the base and of each joint after its motion, in the base frame."""
     frame = np.eye(4)
     yield frame
     for joint, angle in zip(arm.joints, q):
@@ -135,7 +135,7 @@ def frames(arm: SerialArm, q: Sequence[float]) -> Iterator[Frame]:
 
 @contextmanager
 def urdf_of(name: str) -> Iterator[Path]:
-    """The URDF file of a preset, beside the meshes that it names."""
+    """The URDF file of a preset, in a folder with its meshes."""
     source = ARMS[name]
     urdf = located(source.package, source.urdf)
     if source.meshes is None:
@@ -157,7 +157,7 @@ def is_of_arm(link: str) -> bool:
 
 
 def read(name: str) -> Robot:
-    """Raises ValueError where the preset and the file are not the same arm, or a mesh is not found."""
+    """Raises ValueError if the preset and the file are not the same arm, or a mesh is not found."""
     with urdf_of(name) as urdf:
         return _read(name, urdf, ARMS[name].tip)
 
@@ -184,7 +184,7 @@ def _read(name: str, urdf: Path, tip: str) -> Robot:
 
 
 def written(robot: Robot) -> Iterator[str]:
-    """The capsules as C++ in the frames of the preset's joints, each larger by what the numbers' digits leave out."""
+    """The capsules as C++ in the frames of the preset's joints, each larger by the rounding error of its numbers."""
     for link, a, b, radius, name in ((c.link, c.a, c.b, c.radius, c.name) for c in robot.capsules):
         pose = robot.poses[link]
         exact = np.array([pose[:3, :3] @ end + pose[:3, 3] for end in (a, b)])

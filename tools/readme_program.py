@@ -1,7 +1,6 @@
-"""Prints the program of README's section "In a control loop", as a user writes it: .ci/run compiles the program to see
-what the library costs its users.
+"""Prints the program of README's section "In a control loop", whose cost for a user .ci/run measures.
 
-    readme_program.py [HEADING] > program.cpp
+readme_program.py [HEADING] > program.cpp
 """
 
 import re

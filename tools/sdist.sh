@@ -1,6 +1,6 @@
 #!/bin/sh
-# Writes the source distribution to dist/, and makes sure that it holds what building and testing take, and no more.
-#   sdist.sh PYTHON, one with the packages of the group wheel
+# Writes the source distribution to dist/, and checks that it has the files for building and testing, and no other
+# files. sdist.sh PYTHON, one with the packages of the group wheel
 set -eu
 python=$1
 rm -rf dist

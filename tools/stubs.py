@@ -1,4 +1,4 @@
-"""Writes the type stubs of the compiled module afresh, or checks that they are (--check).
+"""Rewrites the type stubs of the compiled module, or checks that they are up to date (--check).
 
 Run it with a Python that has the package installed.
 """

@@ -1,7 +1,6 @@
 #!/bin/sh
-# Installs a wheel into an empty environment, offline and with no program but Python in reach; runs a small test with
-# NumPy alone, and then the Python tests.
-#   try_wheel.sh PYTHON WHEEL WHEELHOUSE
+# Installs a wheel into an empty environment, offline and with Python as the only program in PATH; runs a small test
+# with NumPy alone, and then the Python tests. try_wheel.sh PYTHON WHEEL WHEELHOUSE
 set -eu
 trial=build/trial
 wheel=$2

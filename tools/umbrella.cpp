@@ -1,2 +1,2 @@
 #include "fpbm/core/lanes.hpp"
-#include "fpbm/fpbm.hpp"  // What clang-tidy reads to see every header.
+#include "fpbm/fpbm.hpp"  // clang-tidy reads every header through this file.

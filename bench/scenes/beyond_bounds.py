@@ -17,7 +17,7 @@ from resolved import by_saturate
 import fpbm_cpp as fp
 
 GAINS = (3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)  # k1 [1/s]
-SHARES = (0.0, 0.1, 0.3, 0.6)  # Of the desired velocity that the tip has already.
+SHARES = (0.0, 0.1, 0.3, 0.6)  # Fractions of the desired velocity that the tip has already.
 TICKS = (0, 5, 20, 60, 100)
 DESIRED = np.array([0.4, -0.6, 0.0])  # [m/s], toward the first vertex.
 ARM = SCENE.arm

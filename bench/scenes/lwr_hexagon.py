@@ -27,7 +27,7 @@ SCENE = Scene(TABLE, LIMITS, Q0, vertices(), kp=10.0, kd=0.1)
 
 
 def least_distance(point: Array) -> float:
-    """Of the tip [m], by damped least squares clipped to the joints' ranges, then by the gradient; random starts."""
+    """Smallest distance of the tip [m] from random starts, by clipped damped least squares, then by the gradient."""
     arm, rng, least = SCENE.arm, np.random.default_rng(0), np.inf
     for _ in range(STARTS):
         q = rng.uniform(LIMITS.lower, LIMITS.upper)

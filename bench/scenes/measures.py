@@ -1,4 +1,4 @@
-"""What is measured of a motion, from joint positions and velocities by NumPy alone, scales excepted."""
+"""Measures of a motion, from joint positions and velocities by NumPy alone, scales excepted."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ class Measures(NamedTuple):
     time: float  # Until the last vertex [s].
     direction: Array  # Angle (17) between the tip's velocity and the direction to the vertex, each tick [rad].
     off_line: Array  # Distance of the tip from the line between the vertices, each tick [m].
-    speed: float  # Of an inner frame's origin, mean [m/s].
-    place: Array  # Of that origin, mean [m].
+    speed: float  # Mean speed of an inner frame's origin [m/s].
+    place: Array  # Mean position of that origin [m].
     excess: tuple[float, float, float, float]  # See excess().
 
 

@@ -115,7 +115,7 @@ def off_line(found: Found) -> float:
 class Row(NamedTuple):
     method: str
     solved: NDArray[np.bool_]
-    times: Array  # Of the solved ones [s].
+    times: Array  # Times of the solved problems [s].
     text: str
 
 

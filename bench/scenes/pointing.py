@@ -68,7 +68,7 @@ class Scene:
 
 
 class Motion(NamedTuple):
-    """What a tip did; row i of scales and heading belongs to the tick from state i to state i + 1."""
+    """Motion of a tip; row i of scales and heading belongs to the tick from state i to state i + 1."""
 
     q: Array  # (ticks + 1, n)
     qd: Array
@@ -84,7 +84,7 @@ def desired_speed(kp: float, kd: float, error: Array, velocity: Array) -> Array:
 
 
 def pursue(scene: Scene, step: Step, longest: float = LONGEST) -> Motion:
-    """Heads for all vertices in turn, for at most so many seconds."""
+    """Moves to all vertices, one after another, for at most so many seconds."""
     arm, q, qd = scene.arm, scene.q0, np.zeros_like(scene.q0)
     states, velocities, k = [q], [qd], 0
     scales: list[Array] = []

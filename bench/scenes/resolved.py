@@ -1,4 +1,4 @@
-"""Two ways to resolve the levels of a scene: a Tracker with a Stack, and fp.saturate with the scale of SNS."""
+"""Two methods to resolve the levels of a scene: a Tracker with a Stack, and fp.saturate with the scale of SNS."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def by_saturate(scene: Scene, lower: Sequence[Level]) -> Step:
 
 
 def attainable(jacobian: Array, higher: Array) -> Array:
-    """Rows that select what a level can do in the null space of the higher ones, as the pseudoinverse of SNS does."""
+    """Rows of a level in the null space of the higher levels, selected as by the pseudoinverse of SNS."""
     null_space = np.eye(jacobian.shape[1]) - np.linalg.pinv(higher) @ higher
     left, sigma, _ = np.linalg.svd(jacobian @ null_space, full_matrices=False)
     return left.T[sigma > 1e-6]

@@ -82,7 +82,7 @@ def falls_short() -> Iterator[str]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--problems", type=int, default=1000, help="of the Panda")
-    parser.add_argument("--folder", type=Path, default=RESULTS, help="where scenes.md and the figures go")
+    parser.add_argument("--folder", type=Path, default=RESULTS, help="folder of scenes.md and the figures")
     options = parser.parse_args()
     folder: Path = options.folder
     lines = [f"# Published scenes\n\nBy `python bench/scenes/run.py`, fpbm_cpp {fp.__version__}. See docs/scenes.md.\n"]

@@ -1,4 +1,4 @@
-# macOS by zig (pip install ziglang), which carries Apple's headers and a linker. What it makes cannot be run here.
+# macOS by zig (pip install ziglang), which carries Apple's headers and a linker. The programs cannot be run here.
 set(FPBM_MACOS_ARCH aarch64 CACHE STRING "Kind of Mac: aarch64 or x86_64")
 set(CMAKE_TRY_COMPILE_PLATFORM_VARIABLES FPBM_MACOS_ARCH)
 set(CMAKE_SYSTEM_NAME Darwin)
@@ -7,9 +7,9 @@ set(CMAKE_CXX_COMPILER python-zig c++ -target ${FPBM_MACOS_ARCH}-macos.11.0)
 set(CMAKE_C_COMPILER python-zig cc -target ${FPBM_MACOS_ARCH}-macos.11.0)
 # Where little is optimised, zig adds sanitizers of its own.
 set(CMAKE_CXX_FLAGS_INIT -fno-sanitize=all)
-# Its linker crashes over -bundle, which CMake asks for.
+# Its linker crashes if CMake passes -bundle.
 set(CMAKE_MODULE_LINKER_FLAGS_INIT -dynamiclib)
-# CMake wants these by one name each, without arguments.
+# CMake requires one name for each of these, without arguments.
 set(CMAKE_CXX_ARCHIVE_CREATE "python-zig ar qc <TARGET> <LINK_FLAGS> <OBJECTS>")
 set(CMAKE_CXX_ARCHIVE_FINISH "python-zig ranlib <TARGET>")
 # Nothing is installed, and a strip of other systems' knows no Mach-O.

@@ -1,4 +1,4 @@
-"""The directive `headers`: what the headers of a room declare, a section each, so that none is forgotten."""
+"""The directive `headers`: the declarations of all headers of a folder, with a section for each header."""
 
 from __future__ import annotations
 

@@ -9,13 +9,13 @@ from typing import Any
 
 from sphinx.application import Sphinx
 
-MARKUP = re.compile(r"[*|`\\]|(?<=\w)_(?!\w)")  # No |r|, J_W+ or x* is meant as such.
+MARKUP = re.compile(r"[*|`\\]|(?<=\w)_(?!\w)")  # Texts like |r|, J_W+ or x* are not markup.
 OVERLOAD = re.compile(r"^\d+\. \w+(\(self: .*\)) -> .*$")
 SECTION = re.compile(r"^-{3,}$")
 
 
 def rewrite(app: Sphinx, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
-    """Escapes what is no markup, and puts what overloads do before the first one's sections."""
+    """Escapes text that is not markup, and puts summaries of overloads before the first overload's sections."""
     parts: list[tuple[str, list[str]]] = [("", [])]
     for line in lines:
         if found := OVERLOAD.match(line):
@@ -34,7 +34,7 @@ def rewrite(app: Sphinx, what: str, name: str, thing: Any, options: Any, lines: 
 
 
 def restore(app: Sphinx, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
-    """Napoleon takes what comes before a colon in a property's sentence for its type."""
+    """If the sentence of a property has a colon, Napoleon reads the words before the colon as its type."""
     if what == "property":
         lines[:] = [*map(escaped, (inspect.getdoc(thing) or "").splitlines()), ""]
 

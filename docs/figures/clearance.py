@@ -1,4 +1,4 @@
-"""A Panda whose reference leads through a table and a post, as asked for and kept clear: draws clearance.gif.
+"""A Panda whose reference leads through a table and a post, without and with a clearance: draws clearance.gif.
 
     python docs/figures/clearance.py [where to write the film]
 
@@ -29,14 +29,14 @@ from fpbm_cpp.viewer.gap import core, nearest_points
 FPS, SPEED = 12.5, 1.5
 PANDA = fp.SerialArm.preset("panda")
 START = np.array([0.6, 0.0, 0.0, -2.0, 0.0, 2.0, 0.785])
-TOP = 0.15  # Of the table [m].
+TOP = 0.15  # Height of the table [m].
 TABLE = fp.Cuboid(np.array([[1, 0, 0, 0.6], [0, 1, 0, 0], [0, 0, 1, TOP - 0.02], [0, 0, 0, 1.0]]), [0.28, 0.55, 0.02])
 X = 0.06 + PANDA.forward(START)[0, 3]
 POST = fp.Capsule(0, [X, 0, TOP], [X, 0, TOP + 0.35], 0.05, "post")
 LINK, WRONG, WORLD, GAP = "#8FB8DE", "#D55E00", "#E9B44C", "#B0307A"
 TO_EYE = np.array([0.80, 0.25, 0.42]) / np.linalg.norm([0.80, 0.25, 0.42])
 RIGHT = np.cross([0.0, 0.0, 1.0], TO_EYE) / np.linalg.norm(np.cross([0.0, 0.0, 1.0], TO_EYE))
-VIEW = np.array([RIGHT, np.cross(TO_EYE, RIGHT)])  # Of what is far away: parallel lines stay so.
+VIEW = np.array([RIGHT, np.cross(TO_EYE, RIGHT)])  # Parallel projection: parallel lines stay parallel.
 TURN = np.linspace(0.0, np.pi, 17)
 
 
@@ -51,7 +51,7 @@ def motions(clearance: fp.Clearance) -> dict[str, fp.Run]:
     ways = [[0, 0, TOP + 0.12 - tip[2]], [0, -2 * tip[1], 0], [0, 0, 0.35]]  # Down, across, up.
     path = fp.Sequence([fp.Line(way, seconds, time_law="quintic") for way, seconds in zip(ways, (2.0, 4.0, 2.0))])
     scheme = fp.FPBM(0.6, np.ones(7), k1=10, k2=25, null_damping=2)
-    kept = {"as asked for": None, "with a clearance": clearance}
+    kept = {"without a clearance": None, "with a clearance": clearance}
     return {name: fp.track(PANDA, path, scheme, START, clearance=each, hold=0.5) for name, each in kept.items()}
 
 

@@ -2,7 +2,7 @@
 
     python docs/figures/jerk.py [where to write the picture]
 
-Accelerations and jerks are differences of the commanded positions, as a robot's controller sees them.
+Accelerations and jerks are differences of the commanded positions, as a robot's controller computes them.
 """
 
 from __future__ import annotations

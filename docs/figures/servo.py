@@ -1,4 +1,4 @@
-"""A Panda whose handle was dragged about, and out of reach: draws servo.png in a browser without a screen.
+"""A Panda whose handle was dragged, also to unreachable targets: draws servo.png in a browser without a screen.
 
     python docs/figures/servo.py [where to write the picture]
 

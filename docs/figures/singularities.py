@@ -4,7 +4,8 @@
 
 The law as it is and the library's damping run in the library. The two classics, which damp all directions, are
 formulas in NumPy: constant damping (Wampler, 1986) and damping that sets in where the manipulability falls
-(Nakamura and Hanafusa, 1986). All have the same largest gain from a wanted tip velocity to the joints', 1.2/ε or less.
+(Nakamura and Hanafusa, 1986). All have the same largest gain from a desired tip velocity to the joint velocities, 1.2/ε
+or less.
 """
 
 from __future__ import annotations
@@ -78,7 +79,7 @@ def library(motion: Motion, null_damping: float = NULL_DAMPING, **options: float
 
 
 def damped_everywhere(motion: Motion, damping: Callable[[Vector], float]) -> Resolve:
-    """FPBM with J W⁻¹Jᵀ + k I in place of J W⁻¹Jᵀ."""
+    """FPBM with J W⁻¹Jᵀ + k I instead of J W⁻¹Jᵀ."""
     winv = np.min(motion.weights) / np.asarray(motion.weights)
 
     def resolve(q: Vector, qd: Vector, x: Any, xd: Vector, xdd: Vector) -> Vector:
@@ -98,7 +99,7 @@ def wampler(motion: Motion) -> Resolve:
 
 
 def nakamura_hanafusa(motion: Motion) -> Resolve:
-    """k₀ (1 − w/w₀)² where the manipulability w = √det(JJᵀ) is below w₀; k₀ = ε², and w₀ that of σ_min = ε."""
+    """k₀ (1 − w/w₀)² if w = √det(JJᵀ) is below w₀; k₀ = ε², and w₀ is the manipulability at σ_min = ε."""
     w0 = motion.edge * np.prod(np.linalg.svd(motion.jacobian(motion.singular), compute_uv=False)[:-1])
 
     def damping(J: Vector) -> float:
@@ -148,7 +149,7 @@ def run(motion: Motion, resolve: Resolve) -> dict[str, Vector]:
 
 
 def to_the_edge(beyond: float = 0.02, back: bool = True) -> Motion:
-    """Four links of 1 m, sent along a line to a point beyond their reach, and back."""
+    """Four links of 1 m, sent along a line to an unreachable point, and back."""
     arm = fp.PlanarArm([1.0, 1.0, 1.0, 1.0])
     q0 = np.array([0.3, 0.9, -0.5, 0.8])
     start = arm.forward(q0)
@@ -157,7 +158,7 @@ def to_the_edge(beyond: float = 0.02, back: bool = True) -> Motion:
     path = fp.Line(way, 4.0, time_law="quintic")
     if back:
         path = path.then(fp.Line(-way, 4.0, time_law="quintic"))
-    title = "Four links, to 2 cm beyond their reach and back"
+    title = "Four links, to 2 cm beyond the workspace and back"
     singular = np.array([angle, 0, 0, 0])
     return Motion(title, arm, "position", [1, 2, 3, 4], q0, singular, path, 2.0 if back else 30.0, reach=4.0)
 
@@ -165,7 +166,7 @@ def to_the_edge(beyond: float = 0.02, back: bool = True) -> Motion:
 def through_the_middle() -> Motion:
     """A Panda, its hand held level, down a line on which the axes of joints 1, 3, 5 and 7 meet in one point.
 
-    There no joint moves the tip across the plane of the arm, which nobody asks for.
+    There no joint moves the tip across the plane of the arm, but the reference has no motion across the plane.
     """
     arm = fp.SerialArm.preset("panda")
     singular = np.array([0, 0, 0, -1.6, 0, 3.330367060928, 0])
@@ -208,15 +209,15 @@ def draw(axes: Any, motion: Motion) -> None:
         beyond = np.array([np.linalg.norm(motion.target(t)[0]) for t in ts]) - motion.reach
         axes[2].plot(ts[beyond > 0], beyond[beyond > 0], color="k", lw=0.8, ls=":")
         axes[2].annotate(
-            "beyond reach", (4.0, beyond.max()), (0, 9), textcoords="offset points", ha="center", fontsize=8
+            "unreachable", (4.0, beyond.max()), (0, 9), textcoords="offset points", ha="center", fontsize=8
         )
     axes[0].set_title(motion.title, fontsize=10)
 
 
 def rest_at_the_edge() -> None:
-    """How the arm settles that is held to a point out of reach."""
+    """How the arm settles if the target stays at an unreachable point."""
     motion = to_the_edge(beyond=0.1, back=False)
-    print("Four links, held to 10 cm beyond their reach: joint speed 30 s later [rad/s]")
+    print("Four links, target held 10 cm beyond the workspace: joint speed 30 s later [rad/s]")
     for null_damping in (0.0, NULL_DAMPING):
         for brake in (0.0, 10.0):
             done = run(motion, library(motion, null_damping, singular_radius=RADIUS, singular_brake=brake))

@@ -28,7 +28,7 @@ DOCS = Path(__file__).parent.parent
 sys.path.insert(0, str(DOCS.parent / "examples"))
 
 FPS = 12.5
-GRIPPER = 0.1  # From a flange to what it holds [m].
+GRIPPER = 0.1  # From a flange to the held object [m].
 FIRST, SECOND = "#D55E00", "#0072B2"
 LINK, OTHER, BODY, WORLD, TRAY = "#8FB8DE", "#B9A6D9", "#C9C9C9", "#E9B44C", "#7FB77E"
 CAPSULES = fp.Clearance.preset("panda").capsules
@@ -63,7 +63,7 @@ def draw(axes: Any, shapes: Sequence[Shape], seen: np.ndarray) -> None:
 
 
 def panda(robot: fp.Robot, q: np.ndarray, first: int, colour: str) -> list[Shape]:
-    """Capsules of a Panda whose first joint has a number, by those of the preset."""
+    """Capsules of the Panda whose first joint has this number, from the capsules of the preset."""
     names = [robot.joint_names[first + i] for i in range(7)]
     root = np.eye(4) if robot.joints[first].parent == 0 else robot.forward(q, robot.joint_names[first - 1])
     shift = robot.joints[first].joint.placement[:3, 3] * [1, 1, 0]
@@ -158,7 +158,7 @@ def reach() -> Iterator[np.ndarray]:
 
 
 def wipe() -> Iterator[np.ndarray]:
-    """Example 18: a base that moves easily, and one that does not."""
+    """Example 18: a light base and a heavy base."""
     example = importlib.import_module("18_wipe_a_table")
     robot, runs, driven = example.robot, {}, {}
     for name, weight in {"light base": 0.05, "heavy base": 60.0}.items():

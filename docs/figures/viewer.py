@@ -1,4 +1,4 @@
-"""The viewer, with a Panda half-way round its circle: draws viewer.png in a browser without a screen.
+"""The viewer, with a Panda halfway along its circle: draws viewer.png in a browser without a screen.
 
     python docs/figures/viewer.py [where to write the picture]
 

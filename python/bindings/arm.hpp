@@ -19,7 +19,7 @@ struct AnyKinematics {
   bool has_rate = true;  ///< Whether Jd is known.
 };
 
-/// Throws std::invalid_argument where a task in Space has more rows than the arm has joints.
+/// Throws std::invalid_argument if a task in Space has more rows than the arm has joints.
 template <typename Space>
 void require_enough_joints(Eigen::Index dof) {
   if (dof < Space::kRows) {
@@ -39,7 +39,7 @@ struct Arm : Model {
   std::variant<JointVector, Chain<>> source;  ///< Link lengths [m] of an arm in the plane, the chain of one in space.
 
   /// Calls visitor(arm, Space) with the AnyArm and the task space of that name.
-  /// Throws std::invalid_argument where there is none.
+  /// Throws std::invalid_argument if there is none.
   template <typename Visitor>
   auto visit(const std::string& task, Visitor&& visitor) const {
     return std::visit(
@@ -67,7 +67,7 @@ struct Arm : Model {
 };
 
 /// Calls visitor(arm, Space) with the task space of that name, and with the AnyArm of an arm, or null of a robot.
-/// Throws std::invalid_argument where there is no such task, or a robot has no stack.
+/// Throws std::invalid_argument if the task does not exist, or a robot has no stack.
 template <typename Visitor>
 auto visit_space(const Model& model, const std::string& task, bool has_stack, Visitor&& visitor) {
   if (const auto* arm = dynamic_cast<const Arm*>(&model)) {

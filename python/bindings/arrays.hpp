@@ -24,7 +24,7 @@ inline bool is_candidate(const PyObject* /*object*/) {
   return true;
 }
 
-/// Whatever numpy.asarray takes: an argument that is checked and converted here, so that a wrong one is a ValueError
+/// Any input of numpy.asarray: an argument that is checked and converted here, so that a wrong one is a ValueError
 /// with its name.
 class ArrayLike : public py::object {
  public:
@@ -35,7 +35,7 @@ inline std::string shape_text(const py::array& array) {
   return py::cast<std::string>(py::str(array.attr("shape")));
 }
 
-/// Number of dimensions of an array or of what can be one; -1 of all else.
+/// Number of dimensions of an array or of an object that can be converted; otherwise -1.
 inline int dimensions(const ArrayLike& argument) {
   const auto any = py::array::ensure(argument);
   PyErr_Clear();
@@ -64,14 +64,14 @@ inline py::array_t<double, py::array::c_style> real_array(const ArrayLike& argum
 
 using OptionalArray = std::optional<ArrayLike>;
 
-/// An array for a result, in place of a new one.
+/// An array for a result instead of a new array.
 class OutArray : public py::object {
  public:
   PYBIND11_OBJECT_DEFAULT(OutArray, py::object, is_candidate)
 };
 using OptionalOut = std::optional<OutArray>;
 
-/// Where a result of a shape goes: to `out`, or to a new array. Throws std::invalid_argument where `out` is not an
+/// The array for a result of this shape: `out`, or a new array. Throws std::invalid_argument if `out` is not an
 /// array of that shape that can be written without a conversion.
 inline Array result_array(const OptionalOut& out, const std::vector<py::ssize_t>& shape) {
   if (!out) return Array(shape);
@@ -173,7 +173,7 @@ inline JointLimits<Eigen::Dynamic> joint_limits(const py::object& limits) {
   return result;
 }
 
-/// A vector, a matrix or a point of a task space as Python has it.
+/// A vector, a matrix or a point of a task space in Python.
 template <typename Derived>
 Array array_of(const Eigen::MatrixBase<Derived>& values) {
   std::vector<py::ssize_t> shape{values.rows()};

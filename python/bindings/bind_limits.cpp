@@ -10,7 +10,7 @@
 namespace fpbm::bindings {
 namespace {
 
-/// A motion within limits, as Python has it.
+/// A motion within limits, in Python.
 struct PySaturatedMotion {
   Array u;
   double scale;

@@ -81,7 +81,7 @@ Path with_rotation(const Path& path, const ArrayLike& rotation, const std::strin
   return {AnyPath<Pose>(WithRotation(*spatial, fixed_vector<3>(rotation, "rotation"), AnyTimeLaw(law)))};
 }
 
-/// Paths in [begin, end) one after another, as a balanced tree of pairs: a sample goes through few of them.
+/// Paths in [begin, end) one after another, as a balanced tree of pairs: a sample evaluates few of them.
 template <typename Space>
 AnyPath<Space> sequence_in(const Path* const* begin, const Path* const* end) {
   if (end - begin == 1) return (*begin)->as<Space>();
@@ -89,7 +89,7 @@ AnyPath<Space> sequence_in(const Path* const* begin, const Path* const* end) {
   return AnyPath<Space>(Sequence(sequence_in<Space>(begin, middle), sequence_in<Space>(middle, end)));
 }
 
-/// Paths one after another, in the smallest of the spaces that has room for all.
+/// Paths one after another, in the smallest space that contains all of them.
 Path sequence(const std::vector<const Path*>& paths) {
   if (paths.empty()) validation::reject("paths", ": must have at least one path");
   const auto in = [&](auto space) {

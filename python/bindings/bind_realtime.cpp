@@ -27,8 +27,8 @@ struct PyTick {
   double sigma;
   Eigen::VectorXd error;
   std::optional<PyNearest> nearest;
-  Eigen::VectorXd scales;                         ///< Of a stack: of each level.
-  std::shared_ptr<const StackLoop::Parts> parts;  ///< Of a stack: the tasks of the error's entries.
+  Eigen::VectorXd scales;                         ///< For a stack: of each level.
+  std::shared_ptr<const StackLoop::Parts> parts;  ///< For a stack: the tasks of the error's entries.
 
   [[nodiscard]] py::array_t<bool> saturated_joints() const {
     py::array_t<bool> joints(q.size());
@@ -55,7 +55,7 @@ PyTick python_tick(const Tick<Space, kDynamic>& tick, const std::optional<PyNear
   return {tick.q, tick.qd, tick.qdd, tick.status, tick.scale, tick.saturated, tick.sigma, tick.error, nearest, {}, {}};
 }
 
-/// Of a stack.
+/// For a stack.
 PyTick python_tick(const StackLoop& loop, const StackLoop::Result& tick, const std::optional<PyNearest>& nearest) {
   return {tick.q,     tick.qd,          tick.qdd, tick.status,       tick.scale,  tick.saturated,
           tick.sigma, loop.error(tick), nearest,  loop.scales(tick), loop.parts()};
@@ -66,7 +66,7 @@ Space space_of(const AnyTracker<Space>&) {
   return {};
 }
 
-/// What take() gives for a tracker in a posture, with what is nearest there.
+/// The result of take() for a tracker in a posture, with the nearest pair there.
 template <typename Tracker, typename Take>
 PyTick tick_at(Tracker& tracker, const JointVector& q, Take&& take) {
   const std::optional<PyNearest> nearest = nearest_at(tracker.clearance(), q);
@@ -80,8 +80,8 @@ class PyTracker {
   using Stacked = std::unique_ptr<StackLoop>;
   using Any = std::variant<Held<Position<2>>, Held<PlanarPose>, Held<Position<3>>, Held<Pose>, Stacked>;
 
-  /// Calls visitor(tracker, Space) with the tracker of a single task. Throws std::invalid_argument with what a tracker
-  /// of a stack must be given.
+  /// Calls visitor(tracker, Space) with the tracker of a single task. Throws std::invalid_argument with the required
+  /// arguments of a tracker of a stack.
   template <typename Visitor>
   auto visit(const char* remedy, Visitor&& visitor) const {
     return std::visit(
@@ -221,7 +221,7 @@ class PyTracker {
  private:
   static constexpr const char* kByName = "must be given a dictionary of references by task name";
 
-  /// Throws std::invalid_argument where the tracker has one task.
+  /// Throws std::invalid_argument if the tracker has one task.
   [[nodiscard]] StackLoop& stack() const {
     const auto* stacked = std::get_if<Stacked>(&any_);
     if (stacked == nullptr) validation::reject("tracker", " has one task: must have a stack of tasks");

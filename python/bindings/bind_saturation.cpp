@@ -11,7 +11,7 @@
 namespace fpbm::bindings {
 namespace {
 
-/// Motion of several task levels, as Python has it.
+/// Motion of several task levels, in Python.
 struct PyLevels {
   Array u;
   Array scale;

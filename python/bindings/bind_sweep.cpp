@@ -119,7 +119,7 @@ std::vector<std::string> processor_kinds() {
   return kinds;
 }
 
-/// Lets sweeps run in the lanes of this code, or of None, and returns how many motions go side by side.
+/// Lets sweeps run in the lanes of this code, or of None, and returns how many motions run side by side.
 int use_lanes(const py::object& code) {
   lane_code = code.is_none() ? nullptr : static_cast<const LaneCode*>(py::capsule(code).get_pointer());
   return lane_code == nullptr ? 1 : lane_code->lanes;

@@ -22,16 +22,16 @@ struct PyNearest {
   double distance;
 };
 
-/// What an fpbm_cpp.Clearance, or None, is for an arm. Throws std::invalid_argument where it does not fit.
+/// The clearance of an arm from an fpbm_cpp.Clearance or None. Throws std::invalid_argument if it does not fit.
 Clearance<kDynamic> clearance_of(const Model& model, const pybind11::object& given);
 
-/// Adds bounds, a sequence of fpbm_cpp.TaskBounds. Throws std::invalid_argument where one does not suit the arm.
+/// Adds bounds, a sequence of fpbm_cpp.TaskBounds. Throws std::invalid_argument if one does not suit the arm.
 void add_bounds(Clearance<kDynamic>& clearance, const Model& model, const pybind11::object& bounds);
 
 /// The pair of shapes nearest to one another in a posture; none where none is kept apart.
 std::optional<PyNearest> nearest_at(const Clearance<kDynamic>& clearance, const JointVector& q);
 
-/// Moves the obstacle of that name. Throws std::invalid_argument where there is none, or the shape is of another kind.
+/// Moves the obstacle of that name. Throws std::invalid_argument if there is none, or the shape is of another kind.
 void move_obstacle(Clearance<kDynamic>& clearance, const std::string& name, const Shape& shape,
                    const Vector<3>& velocity);
 

@@ -13,7 +13,7 @@ namespace fpbm::bindings {
 inline constexpr int kLanes = static_cast<int>(std::experimental::native_simd<double>::size());
 using InLanes = fpbm::Lanes<kLanes>;
 
-/// A Scalar of what get(scheme) is of each.
+/// A Scalar with get(scheme) of each scheme.
 template <typename Law, typename Get>
 [[nodiscard]] InLanes each(const std::vector<Law>& laws, const Get& get) {
   return InLanes([&](auto lane) { return get(laws[lane]); });

@@ -9,8 +9,8 @@
 
 namespace fpbm::bindings {
 
-/// A tracker as code in lanes sees it (TrackerBatch): an AnyTracker, for joints of a number known when it is compiled.
-/// What it does is compiled once, for every processor.
+/// A tracker for code in lanes (TrackerBatch): an AnyTracker, for joints of a number known when it is compiled.
+/// Its functions are compiled once, for every processor.
 template <typename Space, int N>
 class LaneTracker {
  public:

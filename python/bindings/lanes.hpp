@@ -17,7 +17,7 @@
 
 namespace fpbm::bindings {
 
-/// What became of a motion. Not a number where there is none: of a motion that was not run, or has no sample.
+/// The outcome of a motion. Not a number where there is none: of a motion that was not run, or has no sample.
 struct Outcome {
   static constexpr int kNotRun = -1;
   [[nodiscard]] static Outcome of_nothing() noexcept {
@@ -27,7 +27,7 @@ struct Outcome {
 
   int status;  ///< A Status, or kNotRun.
   int samples;
-  double time;  ///< Of the last sample [s].
+  double time;  ///< Time of the last sample [s].
   MotionSummary<> summary;
 };
 
@@ -48,7 +48,7 @@ using TrackersInLanes = std::vector<LaneTracker<Space, ArmInLanes<Space>::kDof>>
 
 /// Moves one arm as many times as there are lanes, side by side: under each scheme from its start, at rest; within
 /// limits where there is a tracker for each. Writes an outcome for each motion; kNotRun for one that was stopped, or
-/// that was not regular all the way and must be run by itself, as none within limits is.
+/// that was not regular up to its end and must be run by itself, as none within limits is.
 template <typename Space>
 using RunInLanes = void (*)(const ArmInLanes<Space>& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid,
                             const SchemesInLanes<Space>& schemes,
@@ -56,7 +56,7 @@ using RunInLanes = void (*)(const ArmInLanes<Space>& arm, const AnyPath<Space>& 
                             const std::atomic<bool>& stop, Outcome* outcomes);
 
 /// The code in lanes for one kind of processor. Each kind's is a module of its own, so that nothing compiled for a
-/// newer processor is ever linked into what runs on every one.
+/// newer processor is ever linked into code for every processor.
 struct LaneCode {
   int lanes;
   std::tuple<RunInLanes<Position<2>>, RunInLanes<Position<3>>, RunInLanes<Pose>> run;

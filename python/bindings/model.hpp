@@ -23,13 +23,13 @@ struct Model {
   [[nodiscard]] int dof() const noexcept { return robot.dof(); }
   [[nodiscard]] const JointLimits<kDynamic>& limits() const noexcept { return robot.limits(); }
   /// Link and offset of a frame: a named one, the link that the joint of that name moves, or 'base'.
-  /// Throws std::invalid_argument where there is none.
+  /// Throws std::invalid_argument if there is none.
   [[nodiscard]] std::pair<int, Transform<>> frame(const std::string& name) const;
 
   Tree<> tree;
   Robot<kDynamic> robot;
   bool planar;                           ///< Whether it is an arm in the plane.
-  std::vector<std::string> joint_names;  ///< Of the drives.
+  std::vector<std::string> joint_names;  ///< Names of the drives.
 };
 
 }  // namespace fpbm::bindings

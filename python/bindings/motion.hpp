@@ -17,7 +17,7 @@ namespace fpbm::bindings {
 
 /// The path of a task of a stack.
 struct TaskPath {
-  std::size_t task;  ///< Of the plan's tasks.
+  std::size_t task;  ///< Index among the plan's tasks.
   std::variant<AnyPath<Position<3>>, AnyPath<Pose>> path;
 };
 
@@ -25,7 +25,7 @@ struct TaskPath {
 struct StackOptions {
   StackPlan plan;
   std::vector<TaskPath> paths;  ///< The first is the motion's, of which samples have tip, reference and error.
-  double duration;              ///< Of the longest path [s].
+  double duration;              ///< Duration of the longest path [s].
 };
 
 /// How a motion keeps limits; the length of its tick is the grid's.
@@ -46,10 +46,10 @@ struct Motion {
   State<kDynamic> start;
   TimeGrid<double> grid;
 
-  /// rollout() of it. Throws std::invalid_argument where scheme or start do not fit the arm.
+  /// rollout() of it. Throws std::invalid_argument if scheme or start do not fit the arm.
   RolloutResult<kDynamic> simulate(const Output<Space>& output) const;
 
-  /// fpbm::track() of it. Throws std::invalid_argument where scheme, start, limits, options or clearance do
+  /// fpbm::track() of it. Throws std::invalid_argument if scheme, start, limits, options or clearance do
   /// not fit.
   RolloutResult<kDynamic> track(const LimitOptions& limit_options, const Output<Space>& output) const;
 
@@ -57,7 +57,7 @@ struct Motion {
   template <int N>
   LaneTracker<Space, N> tracker(const LimitOptions& limit_options) const;
 
-  /// Throws as simulate() does, or as track() where there are limits.
+  /// Throws as simulate() does, or as track() if there are limits.
   void require(const LimitOptions* limit_options) const;
 };
 

@@ -16,7 +16,7 @@ struct Path {
   }
 
   /// The path for a task in that space, as convert_path() makes it.
-  /// Throws std::invalid_argument where the task cannot follow it.
+  /// Throws std::invalid_argument if the task cannot follow it.
   template <typename Space>
   [[nodiscard]] AnyPath<Space> as() const;
 };

@@ -9,7 +9,7 @@ namespace {
 
 constexpr const char* kKinds[] = {"position", "orientation", "pose", "axis", "center_of_mass", "posture"};
 constexpr const char* kRows[] = {"x", "y", "z", "rx", "ry", "rz"};
-/// Of an arm in the plane, which has no other rows: x, y, rz.
+/// The rows of an arm in the plane: x, y, rz.
 constexpr AnyFrameTask::Selection kPlane = {true, true, false, false, false, true};
 
 template <typename Value>

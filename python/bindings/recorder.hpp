@@ -8,20 +8,20 @@
 
 namespace fpbm::bindings {
 
-/// Where a motion is written to, and what ends it early; null is left out.
+/// Arrays for a motion, and the condition that ends it early; null is left out.
 template <typename Space>
 struct Output {
   MotionBuffers<Space, kDynamic> buffers = {};
-  double* scale = nullptr;      ///< Of each tick, of a motion that keeps limits,
+  double* scale = nullptr;      ///< Scale of each tick of a motion within limits,
   bool* saturated = nullptr;    ///< and a row of joints.
-  double* clearance = nullptr;  ///< Distance of the nearest pair, written by whoever knows it.
-  double* scales = nullptr;     ///< Of a stack: a row of levels,
+  double* clearance = nullptr;  ///< Distance of the nearest pair, written by the code that computes it.
+  double* scales = nullptr;     ///< For a stack: a row of levels,
   double* errors = nullptr;     ///< and the errors of all tasks.
   MotionSummary<>* summary = nullptr;
   const std::atomic<bool>* stop = nullptr;
 };
 
-/// The recorder of every motion: one type, so that a rollout is compiled once, whatever is wanted of it.
+/// The recorder of every motion: one type, so that a rollout is compiled once for all outputs.
 template <typename Space>
 class Recorder {
  public:

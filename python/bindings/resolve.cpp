@@ -16,7 +16,7 @@ void require_xdd(const Scheme& scheme, const OptionalArray& xdd) {
   }
 }
 
-/// What made(Space), the scheme for these joints, asks for in a state.
+/// The result of made(Space), the scheme for these joints, in a state.
 template <typename Space, typename Made>
 Array resolve(const Scheme& scheme, const Kinematics<Space, kDynamic>& kinematics, const State<kDynamic>& state,
               const ArrayLike& x, const ArrayLike& xd, const OptionalArray& xdd, const OptionalOut& out,

@@ -38,12 +38,12 @@ struct Scheme {
   SingularDamping<> singular = SingularDamping<>::off();
 
   /// The scheme for an arm, objectives and all.
-  /// Throws std::invalid_argument where a parameter is out of range or does not fit the arm.
+  /// Throws std::invalid_argument if a parameter is out of range or does not fit the arm.
   template <typename Space>
   [[nodiscard]] EitherScheme<Space> make(const AnyArmFor<Space>& arm) const;
 
   /// The scheme for that many joints, without an arm.
-  /// Throws std::invalid_argument as make() does, and where an objective needs an arm.
+  /// Throws std::invalid_argument as make() does, and if an objective needs an arm.
   template <typename Space>
   [[nodiscard]] EitherScheme<Space> make_without_arm(Eigen::Index dof) const;
 
@@ -78,7 +78,7 @@ struct Scheme {
     }
   }
 
-  /// The weights as a diagonal of dof entries, which are 1 unless given. Throws std::invalid_argument where they are of
+  /// The weights as a diagonal of dof entries, which are 1 unless given. Throws std::invalid_argument if they are of
   /// another number. W must not be dense.
   template <int N>
   [[nodiscard]] DiagonalWeights<N> diagonal_weights(Eigen::Index dof) const {
@@ -113,11 +113,11 @@ struct Scheme {
     Eigen::Index dof = 0;
     std::shared_ptr<const EitherScheme<Space>> scheme = {};
   };
-  /// Of kept().
+  /// Results of kept().
   mutable std::tuple<Kept<Position<2>>, Kept<PlanarPose>, Kept<Position<3>>, Kept<Pose>> kept_ = {};
 };
 
-/// The weights of a scheme, behind one type. Throws std::invalid_argument where they are for another number of joints.
+/// The weights of a scheme, behind one type. Throws std::invalid_argument if they are for another number of joints.
 AnyWeights any_weights(const Scheme& scheme, Eigen::Index dof);
 
 /// The parameters that are numbers, and 0 where they are not given.

@@ -15,7 +15,7 @@
 
 namespace fpbm::bindings {
 
-/// By the names of tasks: what each is to follow, and where it is.
+/// By the names of tasks: the reference and the point of each task.
 using PyReferences = py::typing::Dict<py::str, py::object>;
 using PyPoints = py::typing::Dict<py::str, Array>;
 
@@ -23,18 +23,18 @@ struct PyFollower {
   std::variant<AnyFollower<Position<2>>, AnyFollower<PlanarPose>, AnyFollower<Position<3>>, AnyFollower<Pose>> any;
 };
 
-/// A tracker of a stack as Python has it: references and results by the names of the tasks.
+/// A tracker of a stack in Python: references and results by the names of the tasks.
 class StackLoop {
  public:
   using Result = StackMotion::Result;
   using Parts = std::vector<std::pair<std::string, int>>;
 
-  /// stack: an fpbm_cpp.Stack. Throws std::invalid_argument where a task does not suit the arm, and as fpbm::Tracker.
+  /// stack: an fpbm_cpp.Stack. Throws std::invalid_argument if a task does not suit the arm, and as fpbm::Tracker.
   StackLoop(const py::object& stack, const Scheme& scheme, const Model& model, const State<kDynamic>& start,
             const TrackerOptions<>& options, const JointLimits<kDynamic>& limits, const JointVector& qdd0,
             const Clearance<kDynamic>& clearance);
 
-  /// One tick toward references: a dictionary of what Tracker.tick() takes, by the names of the tasks. A task that is
+  /// One tick toward references: a dictionary of arguments of Tracker.tick(), by the names of the tasks. A task that is
   /// not in it keeps its last target, at rest. Throws std::invalid_argument, before the tick, on a bad reference.
   [[nodiscard]] Result tick(const PyReferences& references);
   [[nodiscard]] Result resolve_measured(const State<kDynamic>& measured, const PyReferences& references);
@@ -42,9 +42,9 @@ class StackLoop {
   /// A path laid out from where a task is now. task: its name, or none of the only one that follows paths.
   [[nodiscard]] PyFollower follow(const Path& path, double ramp, const std::optional<std::string>& task) const;
 
-  /// Throws std::invalid_argument unless there is such a level below the first.
+  /// Throws std::invalid_argument unless the level exists and is below the first.
   void enable(int level, bool on);
-  /// Level k becomes what was level order[k]. Throws std::invalid_argument unless order has each level once, and its
+  /// The new level k is the old level order[k]. Throws std::invalid_argument unless order has each level once, and its
   /// first level is enabled.
   void reorder(const std::vector<int>& order);
   void stop() noexcept { motion_.stop(); }

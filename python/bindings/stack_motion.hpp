@@ -16,7 +16,7 @@ class StackMotion {
  public:
   using Space = StackTracker::Space;
   using Result = StackTracker::Result;
-  /// What a task follows in a tick: a path or a filter, which have their own references.
+  /// The reference of a task in a tick: a path or a filter, which have their own references.
   using Source =
       std::variant<AnyFollower<Position<3>>*, AnyFollower<Pose>*, TargetFilter<Position<3>>*, TargetFilter<Pose>*>;
   using Sources = std::vector<std::pair<const StackTask*, Source>>;
@@ -31,10 +31,10 @@ class StackMotion {
   void aim(const Targets& targets) noexcept;
   /// One tick: tasks with a source follow it, the others have their targets. The clocks of the sources advance.
   [[nodiscard]] Result tick(const Sources& sources) noexcept;
-  /// Throws std::invalid_argument where the scheme is of velocity level.
+  /// Throws std::invalid_argument if the scheme is of velocity level.
   [[nodiscard]] Result resolve_measured(const State<kDynamic>& measured, const Sources& sources);
 
-  /// Level k becomes what was level order[k], with its targets. False, without an effect, as Stack::reorder().
+  /// The new level k is the old level order[k], with its targets. False, without an effect, as Stack::reorder().
   bool reorder(const std::array<int, AnyStack::kLevels>& order) noexcept;
 
   void stop() noexcept;

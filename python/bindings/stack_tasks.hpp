@@ -13,15 +13,15 @@ namespace fpbm::bindings {
 /// In the order of FrameCoordinates, then the posture.
 enum class TaskKind { kPosition, kOrientation, kPose, kAxis, kCenterOfMass, kPosture };
 
-/// A task of a stack as Python has it.
+/// A task of a stack in Python.
 struct StackTask {
   std::string name;
   TaskKind kind;
-  int index;  ///< Of AnyStack's tasks.
+  int index;  ///< Index among AnyStack's tasks.
   int size;   ///< Rows of its point's displacements.
   std::vector<int> joints;
 
-  /// First row in those of its place in an AnyStack: angles alone come after lengths.
+  /// First row within the rows of its place in an AnyStack: angles alone come after lengths.
   [[nodiscard]] int shift() const noexcept { return kind == TaskKind::kOrientation || kind == TaskKind::kAxis ? 3 : 0; }
   [[nodiscard]] bool follows_paths() const noexcept { return kind == TaskKind::kPosition || kind == TaskKind::kPose; }
 
@@ -42,11 +42,11 @@ struct StackTarget {
   Vector<kDynamic> xdd;
 };
 
-/// What Python's Stack says, for a robot.
+/// A Stack of Python for a robot.
 struct StackPlan {
   Tree<> tree;
   std::vector<StackTask> tasks;
-  std::vector<std::optional<StackTarget>> targets;  ///< Of each task, if it says one.
+  std::vector<std::optional<StackTarget>> targets;  ///< Target of each task, if the task has one.
   int levels = 0;
   AnyStack velocity;      ///< The tasks with their gains at velocity level,
   AnyStack acceleration;  ///< and at acceleration level.
@@ -54,7 +54,7 @@ struct StackPlan {
   [[nodiscard]] const AnyStack& at(Level level) const noexcept {
     return level == Level::kVelocity ? velocity : acceleration;
   }
-  /// Throws std::invalid_argument where no task has that name.
+  /// Throws std::invalid_argument if no task has that name.
   [[nodiscard]] const StackTask& task(const std::string& name) const {
     std::string known;
     for (const StackTask& each : tasks) {
@@ -63,8 +63,8 @@ struct StackPlan {
     }
     validation::reject("task", " = '" + name + "': must be a task of the stack: " + known);
   }
-  /// The task that follows a path: that of the name, or the only position or pose.
-  /// Throws std::invalid_argument where there is none.
+  /// The task that follows a path: the task of the name, or the only position or pose.
+  /// Throws std::invalid_argument if there is none.
   [[nodiscard]] const StackTask& follower(const std::optional<std::string>& name) const {
     if (name) {
       const StackTask& named = task(*name);

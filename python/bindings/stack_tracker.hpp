@@ -24,7 +24,7 @@ class StackTracker {
   virtual ~StackTracker() = default;
 
   virtual Result advance(const TickReferences<Space>& references) noexcept = 0;
-  /// Throws std::invalid_argument where the scheme is of velocity level.
+  /// Throws std::invalid_argument if the scheme is of velocity level.
   [[nodiscard]] virtual Result resolve_measured(const State<kDynamic>& measured, const Reference<Space>& reference) = 0;
 
   virtual bool enable(int level, bool on) noexcept = 0;
@@ -38,7 +38,7 @@ class StackTracker {
   [[nodiscard]] virtual Clearance<kDynamic>& clearance() noexcept = 0;
 };
 
-/// What a tracker of a stack starts from, apart from its scheme.
+/// The arguments of a tracker of a stack, apart from its scheme.
 struct StackStart {
   const Tree<>& tree;
   const AnyStack& stack;
@@ -49,7 +49,7 @@ struct StackStart {
   const Clearance<kDynamic>& clearance;
 };
 
-/// The tracker. Throws std::invalid_argument as fpbm::stack_tracker() does, and where an objective of the scheme needs
+/// The tracker. Throws std::invalid_argument as fpbm::stack_tracker() does, and if an objective of the scheme needs
 /// a single task.
 std::unique_ptr<StackTracker> make_stack_tracker(const Scheme& scheme, const StackStart& from);
 

@@ -12,7 +12,8 @@
 
 namespace fpbm::bindings {
 
-/// One motion of a sweep: under which scheme, from where at rest, and where to write it if the whole motion is wanted.
+/// One motion of a sweep: under which scheme, from where at rest, and where to write it if the whole motion is
+/// recorded.
 template <typename Space>
 struct Job {
   const Scheme* scheme;
@@ -100,7 +101,7 @@ class Runner {
   return scheme.is_plain() && !std::holds_alternative<Scheme::Dense>(scheme.weights);
 }
 
-/// The jobs of a level that can go side by side.
+/// The jobs of a level that can run side by side.
 template <typename Space>
 [[nodiscard]] std::vector<std::size_t> side_by_side(const std::vector<Job<Space>>& jobs, Level level) {
   std::vector<std::size_t> members;
@@ -116,7 +117,7 @@ template <typename Space>
 /// Runs each job on one arm along one path, as simulate() would or, where limit_options is not null, track(); and
 /// writes an outcome for each. Where code is not null, it runs motions of one task side by side, with results that do
 /// not depend on which. Once stop is set, which is looked at in every sample, all that are not done yet are not run.
-/// Throws std::invalid_argument where a scheme, a start or the limits do not fit the arm.
+/// Throws std::invalid_argument if a scheme, a start or the limits do not fit the arm.
 template <typename Space>
 void sweep(const Arm& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid,
            const std::vector<Job<Space>>& jobs, const LimitOptions* limit_options, const LaneCode* code,

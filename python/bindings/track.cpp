@@ -100,7 +100,7 @@ class Followers {
 };
 
 /// fpbm::track() of a stack: the sample's tip, reference and error are those of the task that follows the first path,
-/// its J, for summaries, that of the arm's tip.
+/// its J, for summaries, is the Jacobian of the arm's tip.
 template <typename Space>
 RolloutResult<kDynamic> track_stack(const Motion<Space>& motion, const LimitOptions& limit_options,
                                     const Output<Space>& output) {

@@ -31,7 +31,7 @@ class AnyTracker {
   virtual Result tick(const Reference<Space>& reference) noexcept = 0;
   virtual Result tick(AnyFollower<Space>& follower) noexcept = 0;
   virtual Result tick(TargetFilter<Space>& filter) noexcept = 0;
-  /// Throws std::invalid_argument where the scheme is of velocity level.
+  /// Throws std::invalid_argument if the scheme is of velocity level.
   [[nodiscard]] virtual Result resolve_measured(const State<kDynamic>& measured, const Reference<Space>& reference) = 0;
 
   virtual void stop() noexcept = 0;
@@ -51,7 +51,7 @@ class AnyTracker {
   virtual Status advance(const TickReferences<Space>& references) noexcept = 0;
 };
 
-/// What a tracker starts from, apart from its scheme.
+/// The arguments of a tracker, apart from its scheme.
 template <typename Space>
 struct TrackerStart {
   const AnyArmFor<Space>& arm;
@@ -62,7 +62,7 @@ struct TrackerStart {
   const Clearance<kDynamic>& clearance;
 };
 
-/// The tracker. Throws std::invalid_argument where scheme, start, options, limits or clearance do not fit, as
+/// The tracker. Throws std::invalid_argument if scheme, start, options, limits or clearance do not fit, as
 /// fpbm::Tracker does. Compiled once, in tracker.cpp.
 template <typename Space>
 std::unique_ptr<AnyTracker<Space>> make_tracker(const Scheme& scheme, const TrackerStart<Space>& from);

@@ -27,7 +27,7 @@ FRAME = Parameter(shape="(4, 4)", unit="m")
 
 @data
 class JointLimits(Data):
-    """Bounds of the motion of each joint; infinity means no bound. For a prismatic joint, read m in place of rad.
+    """Bounds of the motion of each joint; infinity means no bound. For a prismatic joint, read m instead of rad.
 
     Raises ParameterError if a bound is not a number, or the lengths of the arrays differ.
     """
@@ -60,10 +60,10 @@ class JointLimits(Data):
 
 @data
 class Joint(Data):
-    """One joint of a chain. For a prismatic joint, read m in place of rad."""
+    """One joint of a chain. For a prismatic joint, read m instead of rad."""
 
     type: str = parameter("Type of the joint.", default="revolute", choices=("revolute", "continuous", "prismatic"))
-    placement: ArrayField = parameter("Frame in that of the previous joint, both at zero.", FRAME, default=IDENTITY)
+    placement: ArrayField = parameter("Frame in the previous joint's frame, both at zero.", FRAME, default=IDENTITY)
     axis: ArrayField = parameter("Axis in the joint's frame; its length is ignored.", default=(0, 0, 1), shape="(3,)")
     lower: float = parameter("Lower bound of the position.", default=-inf, infinite=True, unit="rad")
     upper: float = parameter("Upper bound of the position.", default=inf, infinite=True, unit="rad")

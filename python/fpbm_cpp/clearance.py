@@ -216,7 +216,7 @@ class Clearance(Data):
 
 
 def _postures(joints: Sequence[Joint], given: ArrayLike | None, srdf: str | os.PathLike[str] | None) -> Array | None:
-    """Positions (k, N) of all joints in the given postures or in those of an SRDF file; None if there are none."""
+    """Positions (k, N) of all joints in the given postures or an SRDF file; None if there are none."""
     from .io.capsule_gaps import follow
     from .io.srdf import read_group_states
 
@@ -241,7 +241,7 @@ def _postures(joints: Sequence[Joint], given: ArrayLike | None, srdf: str | os.P
 
 
 def _is_whole(state: Mapping[str, float], names: Sequence[str]) -> bool:
-    """Whether a group state has all joints of a robot, except those of its planar base, and no others."""
+    """Whether a group state has all joints of a robot, except the joints of its planar base, and no others."""
     return set(names) - PLANAR_BASE <= set(state) <= set(names)
 
 

@@ -130,7 +130,7 @@ class Balanced(AccelerationScheme):
 class FPBM(AccelerationScheme):
     """Feedback-added pseudoinverse-type balanced minimisation, (13).
 
-    The balance (16) with b = xdd - Jd qd + k1 (xd - J qd) + k2 (x - f(q)) in place of xdd - Jd qd, so that the tip
+    The balance (16) with b = xdd - Jd qd + k1 (xd - J qd) + k2 (x - f(q)) instead of xdd - Jd qd, so that the tip
     error e obeys e'' + k1 e' + k2 e = 0 for every alpha and W.
     """
 

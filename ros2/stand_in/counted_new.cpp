@@ -1,4 +1,4 @@
-// Counts what the test allocates, by operators new of its own.
+// Counts the allocations of the test, by its own operators new.
 
 #include "counted_new.hpp"
 

@@ -17,7 +17,7 @@ namespace stand_in {
 enum class Lifecycle { kUnconfigured, kInactive, kActive, kFinalized };
 
 /// Joints that follow their commands with a lag and an offset, and a controller manager that loads the controller and
-/// calls it. Watches every call: what is allocated, and by how much a limit is exceeded.
+/// calls it. Watches every call: the allocations, and by how much a limit is exceeded.
 template <std::size_t Dof>
 class Driven {
  public:
@@ -34,7 +34,7 @@ class Driven {
     command.fill(std::numeric_limits<double>::quiet_NaN());  // As hardware that was never commanded.
   }
 
-  /// Loads and configures. False where the controller refuses.
+  /// Loads and configures. False if the controller refuses.
   [[nodiscard]] bool load(const Overrides& overrides = {}) {
     description.controller_manager_update_rate = description.update_rate = rate;
     if (controller_->init(description, overrides) != controller_interface::return_type::OK) return false;
@@ -56,7 +56,7 @@ class Driven {
     }
     controller_->assign_interfaces(std::move(commands), std::move(states));
     last_velocity_ = last_acceleration_ = {};
-    // An arm that does not follow its command starts where it stands.
+    // An arm that does not follow its command starts at its measured posture.
     for (std::size_t i = 0; i < kDof; ++i) last_[i] = std::abs(command[i] - q[i]) < 0.05 ? command[i] : q[i];
     first_ = true;
     seconds_since_call_ = 0.0;
@@ -121,7 +121,7 @@ class Driven {
     }
     return *std::any_cast<std::weak_ptr<rclcpp::Publisher<Message>>>(topics().at(topic)).lock();
   }
-  /// How many subscriptions, publishers and timers of the controller are alive: those of poses, and the timers.
+  /// How many subscriptions, publishers and timers of the controller are alive: the topics of poses, and the timers.
   template <typename Message>
   [[nodiscard]] std::size_t alive(const std::string& topic) {
     std::size_t count = subscription<Message>(topic) ? 1 : 0;
@@ -129,7 +129,7 @@ class Driven {
     return count;
   }
 
-  unsigned int rate = 1000;  ///< Of the manager [Hz].
+  unsigned int rate = 1000;  ///< Update rate of the manager [Hz].
   controller_interface::ControllerInterfaceParams description;
   Lifecycle state = Lifecycle::kUnconfigured;
   Joints q;
@@ -138,13 +138,13 @@ class Driven {
   Joints measured_velocity{};
   std::array<Lock, 2 * kDof> command_locks{};
   std::array<Lock, 2 * kDof> state_locks{};
-  double offset = 0.0;  ///< Of each joint from its command [rad].
+  double offset = 0.0;  ///< Offset of each joint from its command [rad].
   std::size_t lag = 0;  ///< [ticks]
-  bool held = false;    ///< By somebody's hand.
+  bool held = false;    ///< Whether a person holds the arm.
   bool watched = true;
   std::int64_t calls = 0;
   long allocated = 0;
-  double excess = -1e9;               ///< Of a bound on position or velocity [rad, rad/s].
+  double excess = -1e9;               ///< Excess over a bound on position or velocity [rad, rad/s].
   double acceleration_excess = -1.0;  ///< As a share of the bound.
   double jerk_excess = -1.0;          ///< As a share of the bound.
 

@@ -60,7 +60,7 @@ void moving() {
   check(robot.activate(), "velocities measured: activated at rest again", 1);
 }
 
-/// The command of another controller that is too far away, and readings that are no numbers.
+/// The command of another controller that is too far away, and readings that are not numbers.
 void unusable() {
   Robot robot;
   check(robot.load(), "configured", 1);

@@ -34,7 +34,7 @@ inline geometry_msgs::msg::PoseStamped pose_message(const fpbm::Transform<>& pos
   return message;
 }
 
-/// Of positions and orientations [m, rad].
+/// Sum of the distances of positions and orientations [m, rad].
 inline double distance(const fpbm::Transform<>& a, const fpbm::Transform<>& b) {
   return (a.p - b.p).norm() + (a.R - b.R).norm();
 }

@@ -49,7 +49,7 @@ class Controller {
   /// Whether it is refused with a text.
   [[nodiscard]] bool refuses(const std::string& text) { return !configure() && logged(text); }
 
-  /// The sum of the ways of the joints in 0.3 s at a twist [rad]; -1 where it cannot be activated.
+  /// The sum of the displacements of the joints in 0.3 s at a twist [rad]; -1 if it cannot be activated.
   double way() {
     q.resize(stand_in::parameters.joints.size());
     const std::vector<double> start = q;
@@ -98,7 +98,7 @@ void every_preset() {
     const Given own = given(preset.name);
     Controller controller(own);
     const double way = controller.configure() ? controller.way() : -1.0;
-    check(way > 0.001 && way < 1.0, (own.arm + ": way of all joints in 0.3 s [rad]").c_str(), way);
+    check(way > 0.001 && way < 1.0, (own.arm + ": displacement of all joints in 0.3 s [rad]").c_str(), way);
     Controller short_of_one(own);
     stand_in::parameters.joints.pop_back();
     check(short_of_one.refuses(own.joints.back()), (own.arm + ": refused with a joint too few, which is named").c_str(),

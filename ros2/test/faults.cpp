@@ -17,7 +17,7 @@ void locked(Robot& robot) {
   const Transform<> start = robot.tip();
   Transform<> elsewhere = start;
   elsewhere.p(2) += 0.1;
-  robot.watched = false;  // Where the arm is stopped by locks, it stops at once.
+  robot.watched = false;  // If locks stop the arm, the arm stops immediately.
   robot.hear("~/target_pose", pose_message(elsewhere, 12.0));
   robot.tick(200);
   stand_in::locked = true;
@@ -61,7 +61,7 @@ void following_error(Robot& robot) {
   check(logged("panda_joint"), "held arm: the stop is logged, with its joint", 1);
   (void)robot.said<DiagnosticArray>("/diagnostics");
   check(!logged("panda_joint"), "held arm: the stop is logged once", 1);
-  robot.held = false;  // The hand lets the arm go to its command.
+  robot.held = false;  // The arm is released, and moves to its command.
   robot.tick(100);
   const auto& later = robot.said<DiagnosticArray>("/diagnostics").last.status.at(0);
   const double at_stop = std::stod(later.values.at(3).value);
@@ -75,7 +75,7 @@ void states(Robot& robot) {
   check(robot.command == before, "deactivated: the command is the last", 1);
   const int count = robot.said<PoseStamped>("~/tip_pose").count;
   check(robot.said<PoseStamped>("~/tip_pose").count == count, "deactivated: tip poses published", 0);
-  robot.hear("~/target_pose", pose_message(Transform<>{}, 30.0));  // To nobody.
+  robot.hear("~/target_pose", pose_message(Transform<>{}, 30.0));  // No controller is active.
 
   robot.held = false;
   check(robot.activate(), "activated again", 1);
@@ -83,7 +83,7 @@ void states(Robot& robot) {
   robot.tick(500);
   double way = 0.0;
   for (std::size_t i = 0; i < Robot::kDof; ++i) way = std::max(way, std::abs(robot.q[i] - stands[i]));
-  check(way < 1e-9, "activated again: way from where it stands [rad]", way);
+  check(way < 1e-9, "activated again: displacement from the measured posture [rad]", way);
   Transform<> elsewhere = robot.tip();
   elsewhere.p(1) += 0.05;
   robot.hear("~/target_pose", pose_message(elsewhere, 31.0));
@@ -95,9 +95,9 @@ void states(Robot& robot) {
   out_of_reach.p(0) += 2.0;
   robot.hear("~/target_pose", pose_message(out_of_reach, 36.0));
   robot.tick(20000);
-  check(robot.speed() < 1e-3, "out of reach: speed at the end [rad/s]", robot.speed());
+  check(robot.speed() < 1e-3, "unreachable target: speed at the end [rad/s]", robot.speed());
 
-  // A deactivated arm that moves: its velocity commands are zero at once.
+  // A deactivated arm that moves: its velocity commands are zero immediately.
   robot.hear("~/target_pose", pose_message(elsewhere, 60.0));
   robot.tick(300);
   const double moving = robot.speed();

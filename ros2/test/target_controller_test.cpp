@@ -1,5 +1,5 @@
-// Runs the controller on simulated arms, all tests or those that are named. Prints what it measures, and fails where
-// that is not as promised.
+// Runs the controller on simulated arms, all tests or those that are named. Prints the measured values, and fails if
+// one is not as promised.
 
 #include <algorithm>
 #include <cmath>
@@ -68,7 +68,7 @@ void twists(Robot& robot) {
   }
   robot.tick(3000);
   const double way = robot.tip().p(2) - start.p(2);
-  check(std::abs(way + 0.05 * 1.15) < 0.004, "twists: way down in 1 s and until the timeout [m]", way);
+  check(std::abs(way + 0.05 * 1.15) < 0.004, "twists: displacement down in 1 s and until the timeout [m]", way);
   check(robot.speed() < 1e-4, "twists: speed at the end [rad/s]", robot.speed());
 }
 
@@ -97,9 +97,9 @@ void refused(Robot& robot) {
   robot.tick(200);
   check(stand_in::warnings == before + 4, "refused: warnings of frame, NaN, quaternion, twist",
         stand_in::warnings - before);
-  robot.hear("~/target_pose", pose_message(elsewhere, 1.0));  // Older than those before.
+  robot.hear("~/target_pose", pose_message(elsewhere, 1.0));  // Older than the previous stamps.
   robot.tick(200);
-  check(distance(robot.tip(), start) < 1e-4, "refused: way of the tip [m, rad]", distance(robot.tip(), start));
+  check(distance(robot.tip(), start) < 1e-4, "refused: displacement of the tip [m, rad]", distance(robot.tip(), start));
   const auto& said = robot.said<DiagnosticArray>("/diagnostics");
   check(said.last.status.at(0).values.at(4).value == "1", "refused: by its stamp", 1);
 }

@@ -70,10 +70,10 @@ void tasks() {
       .refused("two poses of one arm on a level", "task.tool.level: the poses of level 1");
   Given a_tip;
   a_tip.own.tip_frame = "left_flange";
-  a_tip.refused("tip_frame and tasks", "tip_frame: is 'left_flange', and there are tasks");
+  a_tip.refused("tip_frame and tasks", "tip_frame: is 'left_flange', but tasks are given");
   Given a_tool;
   a_tool.own.tool.xyz = {0.0, 0.0, 0.1};
-  a_tool.refused("a tool and tasks", "tool: is that of tip_frame");
+  a_tool.refused("a tool and tasks", "tool: is only for tip_frame");
   Given neither;
   neither.own.tasks.clear();
   neither.refused("neither tip_frame nor tasks", "tip_frame: is empty, and there are no tasks");

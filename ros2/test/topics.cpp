@@ -27,7 +27,7 @@ void quality_of_service() {
         distance(robot.tip(), elsewhere));
 }
 
-/// A stamp of the past is refused with a warning; a first one of the future blocks nothing after a silence.
+/// A stamp of the past is rejected with a warning; a first stamp of the future blocks nothing after a silence.
 void stamps() {
   Robot robot;
   check(robot.load() && robot.activate(), "stamps: activated", 1);
@@ -45,7 +45,7 @@ void stamps() {
   robot.tick(10);
   const auto status = robot.said<DiagnosticArray>("/diagnostics").last.status.at(0);
   check(status.level == DiagnosticStatus::WARN, "a stamp of the past: level of the diagnostics", status.level);
-  check(logged("refused"), "a stamp of the past: logged", 1);
+  check(logged("rejected"), "a stamp of the past: logged", 1);
   robot.tick(10);
   const auto later = robot.said<DiagnosticArray>("/diagnostics").last.status.at(0);
   check(later.level == DiagnosticStatus::OK, "a stamp of the past: level later", later.level);

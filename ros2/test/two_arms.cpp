@@ -132,7 +132,7 @@ void refused(TwoArms& robot) {
   const auto status = robot.said<DiagnosticArray>("/diagnostics").last.status.at(0);
   check(status.level == DiagnosticStatus::WARN && status.message.find("'left'") != std::string::npos,
         "a stamp of the past: diagnostics name the task", status.level);
-  check(value_of(robot, "left: targets refused") == "1" && value_of(robot, "right: targets refused") == "0",
+  check(value_of(robot, "left: targets rejected") == "1" && value_of(robot, "right: targets rejected") == "0",
         "a stamp of the past: counted for its task", 1);
   check(value_of(robot, "left: scale") == "1.000000", "diagnostics: scale of a task", 1);
 }

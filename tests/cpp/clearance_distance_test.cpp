@@ -49,7 +49,8 @@ class Distances : public ::testing::Test {
 
   Capsule<Scalar> capsule(const Segment<Scalar>& core) { return {core.start, core.start + core.extent, radius()}; }
 
-  /// A second segment: anywhere, nearly parallel, through a point of the first segment, or with an end at such a point.
+  /// A second segment: anywhere, nearly parallel, through a point of the first segment, or with an end at a point of
+  /// the first segment.
   Segment<Scalar> other(const Segment<Scalar>& first) {
     Segment<Scalar> second = segment();
     if (chance(0.3)) second.extent = near_parallel(first.extent);

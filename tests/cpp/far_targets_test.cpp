@@ -30,7 +30,7 @@ const int kTargets = trials(6, 3);
 }
 
 struct Outcome {
-  double speed;   ///< Of any joint in the last two seconds [rad/s].
+  double speed;   ///< Speed of any joint in the last two seconds [rad/s].
   int reversals;  ///< Sign changes of the acceleration of any joint from tick to tick.
 };
 

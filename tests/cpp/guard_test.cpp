@@ -174,7 +174,7 @@ using PandaTracker = GuardedTracker<Level::kAcceleration>;
 
 struct Slide {
   double along = 0.0;  ///< Largest error along the wall [m].
-  double jerk = 0.0;   ///< Of the joints, rms [rad/s³].
+  double jerk = 0.0;   ///< Root mean square of the joint jerks [rad/s³].
   double nearest = 1e9;
   int held = 0;
 };

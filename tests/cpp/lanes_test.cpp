@@ -9,7 +9,7 @@
 #include "fpbm/fpbm.hpp"
 #include "support/random.hpp"
 
-/// Each lane computes the same motion as a single motion, whatever the other lanes contain.
+/// Each lane computes the same motion as a single motion, for all contents of the other lanes.
 namespace fpbm::test::lanes_laws {
 namespace {
 
@@ -212,7 +212,7 @@ TEST(Lanes, run_each_motion_as_by_itself) {
   EXPECT_LE((lane_of<4, 1>(healthy.q, 0) - alone(bent).last.q).norm(), 1e-12);
   EXPECT_LE((lane_of<4, 1>(healthy.q, 1) - alone(other).last.q).norm(), 1e-12);
 
-  // Bitwise, in any lane, whatever the other lanes contain.
+  // Bitwise, in any lane, for all contents of the other lanes.
   const Motions left = run({bent, outstretched}, 0.25);
   const Motions right = run({outstretched, bent}, 0.25);
   EXPECT_EQ((lane_of<4, 1>(left.q, 0)), (lane_of<4, 1>(healthy.q, 0)));

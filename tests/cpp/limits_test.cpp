@@ -225,7 +225,7 @@ TEST(Limits, hold_on_arms_without_redundancy) {
                                  narrow_limits<Eigen::Dynamic>(2, random), trials(125));
 }
 
-/// The last joint of the Panda rotates about the tip. It stays at rest, whatever the other joints cannot do.
+/// The last joint of the Panda rotates about the tip. It stays at rest, although the other joints are limited.
 TEST(Limits, do_not_drive_a_joint_that_cannot_move_the_tip) {
   constexpr int N = Eigen::Dynamic;
   const AnyArm<Position<3>> arm = any_arm(presets::panda());

@@ -248,7 +248,7 @@ TEST(Saturation, is_optimal_at_every_rank) {
   }
 }
 
-/// Random problems like those of the tests of SNS-IK (RethinkRobotics-opensource/sns_ik), each with a task scale that
+/// Random problems as in the tests of SNS-IK (RethinkRobotics-opensource/sns_ik), each with a task scale that
 /// is known to be feasible: J q̈ + J̇ q̇ = s ẍ at acceleration level, J q̇ = s ẋ at velocity level.
 struct SnsBounds {
   double J;

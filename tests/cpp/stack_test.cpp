@@ -147,7 +147,7 @@ void expect_derivatives(const Robot<N, double, Joints>& robot, Task task) {
     EXPECT_LT((here.S * here.xd - here.rows.J * qd).norm(), 1e-12);
     EXPECT_LT((here.rows.Jd - Jd).norm(), 1e-7);
     if constexpr (kIsAxis<Task>) {
-      // Of the angular velocity perpendicular to the axis.
+      // Derivative of the angular velocity perpendicular to the axis.
       const auto turning = [&](const At& state) { return Vector<3>(state.xd - state.xd.dot(state.x) * state.x); };
       const Vector<3> rate = (turning(at(q + h * qd, qd)) - turning(at(q - h * qd, qd))) / (2.0 * h);
       EXPECT_LT((here.rows.Jd * qd - here.S * rate).norm(), 1e-7);

@@ -228,7 +228,7 @@ TYPED_TEST(TrackerBatchLaws, tick_from_equal_states_as_each_by_itself) {
                                                                             all.trackers()[1].tip()};
       PathFollower follower(path, Space::template origin<double>());
       Sample<Space, N, In> sample;
-      double difference = 0.0;  // Of accelerations, relative to their bound.
+      double difference = 0.0;  // Largest difference of accelerations, relative to their bound.
       int limited = 0;
       for (int k = 0; k < All::grid().samples(); ++k) {
         const auto ahead = [&follower](double seconds) noexcept { return follower.ahead(seconds); };
@@ -255,7 +255,7 @@ TYPED_TEST(TrackerBatchLaws, tick_from_equal_states_as_each_by_itself) {
   }
 }
 
-/// Bitwise, in any lane, whatever the other lanes contain.
+/// Bitwise, in any lane, for all contents of the other lanes.
 TYPED_TEST(TrackerBatchLaws, do_not_feel_one_another) {
   using All = Motions<TypeParam>;
   using Case = typename TypeParam::Case;

@@ -26,7 +26,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   return q;
 }
 
-/// Usual settings: damped self-motion and a rest posture. Of fixed size for poses, of run-time size for positions.
+/// Usual settings: damped self-motion and a rest posture. The size is fixed for poses, and known at run time for
+/// positions.
 template <int N = 7>
 [[nodiscard]] AccelerationScheme<N> settling(double k1 = 10.0, double k2 = 25.0) {
   Vector<7> weights;

@@ -1,4 +1,4 @@
-"""Compares what motions.cpp printed on two machines: the same lines and statuses, and numbers as near as asked.
+"""Compares the output of motions.cpp on two machines: equal lines and statuses, and numbers within a tolerance.
 
 Prints the largest difference in double and in float, relative to the largest number of a line.
 """

@@ -17,7 +17,7 @@ void print(const std::string& name, Status status, const Numbers& numbers) {
   std::printf("\n");
 }
 
-/// A path in one go, without limits.
+/// A whole path in one call, without limits.
 template <typename Arm, typename Path, typename Scheme>
 void roll(const std::string& name, const Arm& arm, const Path& path, const Scheme& scheme,
           const Vector<Arm::kDof, typename Arm::Scalar>& q) {

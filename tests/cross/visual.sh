@@ -1,5 +1,5 @@
 #!/bin/sh
-# Compiles a source by clang in place of Visual C++, with the headers of mingw. Warnings are errors; nothing is linked.
+# Compiles a source by clang instead of Visual C++, with the headers of mingw. Warnings are errors; nothing is linked.
 # usage: visual.sh <source>
 set -eu
 gcc=$(dirname "$(x86_64-w64-mingw32-g++-posix -print-libgcc-file-name)")/include

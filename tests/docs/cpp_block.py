@@ -1,7 +1,7 @@
-"""C++ blocks: compiled with warnings as errors; whole programs are linked and run as well.
+"""C++ blocks: compiled with warnings as errors; whole programs are also linked and run.
 
 A block that includes something is a translation unit; any other is the body of a function. An invisible block before it
-is what it takes for granted, at namespace scope.
+has its prerequisites, at namespace scope.
 """
 
 from __future__ import annotations

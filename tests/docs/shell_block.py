@@ -1,6 +1,6 @@
 """Shell blocks: every command, option, extra, preset, target and file in them exists.
 
-Commands of this project are asked for their help; nothing is installed, built or configured.
+Commands of this project are called with --help; nothing is installed, built or configured.
 """
 
 from __future__ import annotations

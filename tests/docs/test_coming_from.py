@@ -81,7 +81,7 @@ def require_loading(name: str, python: Path | str, folder: Path) -> None:
 
 
 def errors(q: Any, target: Any) -> tuple[float, float]:
-    """Of position [m] and rotation [rad]."""
+    """Errors of position [m] and rotation [rad]."""
     tip = fp.SerialArm.preset("panda").forward(q)
     cosine = (np.trace(tip[:3, :3] @ target[:3, :3].T) - 1) / 2
     return float(np.linalg.norm(tip[:3, 3] - target[:3, 3])), float(np.arccos(min(cosine, 1.0)))

@@ -1,10 +1,10 @@
-"""Every code block of the README and of docs/ does what it says.
+"""Every code block of the README and of docs/ works.
 
-Python is run, C++ compiled and whole programs run, CMake projects are built, and shell commands held against what there
-is.
+Python is run, C++ compiled and whole programs run, CMake projects are built, and shell commands compared with the
+existing commands and files.
 
-Blocks of a page share their names, from top to bottom. What a block needs besides, and why one is skipped, stands in a
-comment before it, which readers do not see.
+Blocks of a page share their names, from top to bottom. Further prerequisites of a block, and the reason if it is
+skipped, are in a comment before it, which is not shown.
 """
 
 from __future__ import annotations

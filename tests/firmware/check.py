@@ -13,8 +13,8 @@ QEMU = (
     " -chardev stdio,id=console -semihosting-config enable=on,chardev=console -kernel"
 )
 
-# Of joints [rad]: sines are the library's own, and sums are in the same order. Sines of two C libraries differ in the
-# last bit, which moves joints that press on their limits by up to 2.6e-6.
+# Tolerance of joints [rad]: sines are the library's own, and sums are in the same order. Sines of two C libraries
+# differ in the last bit, which moves joints that press on their limits by up to 2.6e-6.
 TOLERANCE = 0.0
 MOST = {
     "code and constants [bytes]": 225_000,

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Under flags that change what a compiler may do with arithmetic, the library is right or says that it would not be.
+# Under flags that relax the rules of arithmetic, the library is right, or compilation fails with an explanation.
 # Under those that keep to IEEE 754 it must be right.
 # usage: arithmetic.sh <C++ compiler> <scratch dir> <Eigen's include dir>
 set -eu

@@ -1,5 +1,5 @@
 #!/bin/sh
-# The library as firmware has it: in float, without exceptions and run-time types. A bad argument ends the program, and a
+# The library in firmware: in float, without exceptions and run-time types. A bad argument ends the program, and a
 # tick computes nothing in double, which many small processors do in software.
 # usage: firmware.sh <C++ compiler> <scratch dir> <Eigen's include dir>
 set -eu

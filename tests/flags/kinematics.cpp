@@ -4,7 +4,7 @@
 #include <fpbm/linalg/sums.hpp>
 #include <limits>
 
-/// Succeeds where sine and cosine are right, alone and in a vector, and what is not finite is seen.
+/// Succeeds if sine and cosine are right, alone and in a vector, and non-finite numbers are detected.
 namespace {
 
 double worst = 0.0;

@@ -1,6 +1,6 @@
-// Makes states, references, options and limits of arbitrary bytes, and checks what the tracker and the schemes promise:
-// no crash, no NaN or infinity in a result, no bound violated from a viable start, the same bits for the same input,
-// and a good tick again as soon as the reference is good again.
+// Makes states, references, options and limits of arbitrary bytes, and checks the promises of the tracker and the
+// schemes: no crash, no NaN or infinity in a result, no bound violated from a viable start, the same bits for the same
+// input, and a good tick again as soon as the reference is good again.
 
 #include <cmath>
 #include <cstdio>
@@ -40,7 +40,7 @@ void require_same(const Result& a, const Result& b) {
           "the same input gives the same bits");
 }
 
-/// Checks that hold for every result, whatever the input.
+/// Checks that hold for every result and every input.
 template <typename Result>
 void require_sane(const Result& result) {
   require(result.qdd.allFinite(), "accelerations are finite");
@@ -145,7 +145,7 @@ fpbm::SingularDamping<> any_damping(Bytes& bytes, bool& wild) {
   return fpbm::SingularDamping<>(radius, any_gain(bytes, 1e3, wild));
 }
 
-/// What a Panda is to keep clear of: itself, and up to three shapes.
+/// The clearance of a Panda: self-collision, and up to three shapes.
 fpbm::Clearance<7> any_clearance(Bytes& bytes) {
   static const auto chain = fpbm::presets::panda();
   static const auto capsules = fpbm::presets::capsules::panda();
@@ -169,7 +169,7 @@ fpbm::Clearance<7> any_clearance(Bytes& bytes) {
   return {chain, capsules, obstacles, bytes.chance(128) ? 0.0 : bytes.spread(1e-4, 0.05), never_collide};
 }
 
-/// guard: none, or what the arm keeps clear of.
+/// guard: none, or the clearance of the arm.
 template <typename Tracker_, typename Arm, typename Space, typename Scheme, typename... Guards>
 void run_tracker(Bytes& bytes, const Arm& arm, Space space, const Scheme& scheme, bool wild, const Guards&... guard) {
   constexpr int N = Arm::kDof;
@@ -249,7 +249,7 @@ void run_tracker(Bytes& bytes, const Arm& arm, Space space, const Scheme& scheme
     }
   }
 
-  // Whatever happened before, the tip can be held where it is; unless joints without bounds have become too fast.
+  // After any input, the tip can be held at its point, unless joints without bounds have become too fast.
   tracker.resume();
   const fpbm::State<N> before = tracker.state();
   wild = wild || before.qd.norm() > 1e3 || before.q.norm() > 1e6;

@@ -1,4 +1,4 @@
-"""The installed package, with nothing but NumPy beside it; fails where a wheel lacks something or is not what it says.
+"""The installed package, with NumPy only; fails if a wheel is incomplete, or differs from its metadata.
 
 usage: installed.py, with the Python that has the package installed
 """
@@ -28,7 +28,7 @@ def run(*command: str, **environment: str) -> "subprocess.CompletedProcess[str]"
 
 
 def the_package() -> str:
-    """Installed, of one version, and without a library that was not asked for."""
+    """Installed, of one version, and without a library that was not required."""
     site = Path(sysconfig.get_path("platlib"))
     assert site in Path(fp.__file__).parents, f"{fp.__file__} is not in {site}"
     assert fp.__version__ == version("fpbm_cpp"), f"{fp.__version__} is not {version('fpbm_cpp')}"

@@ -12,7 +12,7 @@ from hypothesis import settings
 
 import fpbm_cpp as fp
 
-# A busy machine is no fault of an example's.
+# A busy machine is not an error of an example.
 settings.register_profile("patient", deadline=None)
 settings.load_profile("patient")
 
@@ -37,7 +37,7 @@ def q0() -> np.ndarray:
 
 @pytest.fixture(scope="session")
 def once(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Any]:
-    """once(make, *arguments) is make(*arguments): what takes long is made in one process of pytest-xdist's for all."""
+    """once(make, *arguments) is make(*arguments), computed in one process of pytest-xdist for all."""
     folder = tmp_path_factory.getbasetemp()
     if "PYTEST_XDIST_WORKER" in os.environ:
         folder = folder.parent
@@ -45,7 +45,7 @@ def once(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Any]:
 
     def shared(file: Path, make: Callable[..., Any], arguments: tuple[Hashable, ...]) -> Any:
         lock = file.with_suffix(".lock")
-        give_up = time.monotonic() + 600.0  # Whoever had the lock has crashed.
+        give_up = time.monotonic() + 600.0  # The process with the lock has crashed.
         while time.monotonic() < give_up:
             try:
                 lock.mkdir()

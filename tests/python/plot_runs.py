@@ -1,4 +1,4 @@
-"""Motions to draw, and what any figure must keep to."""
+"""Motions to draw, and requirements on all figures."""
 
 from __future__ import annotations
 
@@ -35,8 +35,9 @@ def a_run_in_space(task: str = "pose", **options: Any) -> fp.Run:
 
 
 def a_run_within_limits() -> fp.Run:
-    """A run as if its limits had slowed it from 0.5 s to 1 s, with joint 2 on a bound then and at the very end, and the
-    tip on its way up and down before a wall.
+    """A run that seems to be slowed by limits from 0.5 s to 1 s.
+
+    Joint 2 is on a bound then and at the end, and the tip moves up and down before a wall.
     """
     run = a_run()
     slowed = (run.t >= 0.5) & (run.t < 1.0)
@@ -78,7 +79,7 @@ def assert_tidy(figure: Figure) -> None:
         boxes.append((text, box))
     for (text, box), (other, its) in combinations(boxes, 2):
         width, height = min(box.x1, its.x1) - max(box.x0, its.x0), min(box.y1, its.y1) - max(box.y0, its.y0)
-        assert min(width, height) < 4, (text, other)  # Of 25 pixels or more that a letter is high.
+        assert min(width, height) < 4, (text, other)  # The height of a letter is 25 pixels or more.
 
 
 def drawn_texts(figure: Figure) -> list[Text]:

@@ -35,7 +35,7 @@ trimesh = pytest.importorskip("trimesh")
 
 
 def outside(points: Array, fits: Sequence[Fit | Capsule], radii: Array | float = 0.0) -> float:
-    """How far the points, or balls about them, reach out of all capsules: not positive where none does."""
+    """Largest distance of the points, or of balls around them, outside all capsules: not positive if all are inside."""
     return float(np.max(np.min([distances(points, f.a, f.b) + radii - f.radius for f in fits], axis=0)))
 
 
@@ -251,7 +251,7 @@ def test_shapes_and_their_frames(write) -> None:
 
 
 def test_parts_of_a_link_are_told_apart(write) -> None:
-    """Where two capsules take less room; each part of an L is inside one of them, and so are the cut faces."""
+    """Two capsules with a smaller volume: each part of an L is inside one of them, and so are the cut faces."""
     long, across = (
         geometry('box size="0.1 0.1 0.8"', '<origin xyz="0 0 0.4"/>'),
         geometry('box size="0.8 0.1 0.1"', '<origin xyz="0.4 0 0"/>'),
@@ -415,7 +415,7 @@ def fitted(path: str, tip: str, base: str | None, per_link: int) -> fp.Clearance
 
 
 def link_frames(arm: fp.SerialArm, q: Array) -> list[Array]:
-    """Of the base and of each joint, in the base frame."""
+    """Frames of the base and of each joint, in the base frame."""
     frames = [np.eye(4)]
     for each, position in zip(arm.joints, q):
         step = np.eye(4)
@@ -429,7 +429,7 @@ def link_frames(arm: fp.SerialArm, q: Array) -> list[Array]:
 
 
 def samples(shape: object, rng: np.random.Generator) -> Array:
-    """Points of a body as Pinocchio has it, all vertices of a mesh among them."""
+    """Points of a body in Pinocchio, all vertices of a mesh among them."""
     kind = type(shape).__name__
     if kind.startswith("BVH"):
         vertices = shape.vertices()
@@ -468,7 +468,7 @@ heavy = pytest.mark.skipif("FPBM_ALL_HOMES" not in os.environ, reason="takes min
     "name", [pytest.param(name, marks=heavy) if name in ("xarm7", "ur10") else name for name in ARMS]
 )
 def test_every_vertex_of_an_arm_is_inside_its_capsules(name: str, once) -> None:
-    """By our own reader exactly; by Pinocchio's, in random postures, faces as well, as far as its readers are exact."""
+    """By our own reader exactly; by Pinocchio's, in random postures, also faces, as far as its readers are exact."""
     pin = pytest.importorskip("pinocchio")
     path, tip, base, most = ARMS[name]
     file = str(ROBOTS / path)

@@ -1,4 +1,4 @@
-"""Arms that keep clear of themselves and of what is around them."""
+"""Arms that avoid self-collision and obstacles."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def turned(rng: np.random.Generator, reach: float) -> Array:
 
 
 def frames(arm: fp.Arm, q: Array) -> list[Array]:
-    """Of all links, each that of its joint after its motion."""
+    """Frames of all links, each the frame of its joint after its motion."""
     if isinstance(arm, fp.PlanarArm):
         arm = fp.SerialArm([fp.Joint(placement=shifted(x)) for x in (0, *arm.lengths[:-1])])
     assert isinstance(arm, fp.SerialArm)
@@ -332,7 +332,7 @@ def test_a_run_comes_back_and_is_made_again(tmp_path: Path) -> None:
     assert back.replay() == run
 
 
-# What is wrong
+# Errors
 
 BALL = fp.Capsule(0, [0, 0, 0], [0, 0, 0], 0.1, "ball")
 
@@ -466,7 +466,7 @@ def test_command_line(in_a_folder: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     )
     assert 0.02 - 1e-9 <= run.clearance.min() < 0.05
     assert f"least clearance {run.clearance.min():.4g} m at" in " ".join(result.output.split())
-    # The job says it all again, wherever one stands.
+    # The job repeats all options, in any folder.
     monkeypatch.chdir("out")
     result = call("track", "--job", "here/job.toml", "--out", "again")
     assert result.exit_code == 0, result.output

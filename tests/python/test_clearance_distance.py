@@ -1,9 +1,9 @@
 """Distances and normals of capsules, half-spaces and boxes against Coal (Pan, Chitta and Manocha 2012), and exact ones.
 
 Coal has closed forms for two capsules, which lose digits where these are short and near parallel, and for a capsule and
-a half-space. For a capsule and a box it iterates (GJK, EPA), which ends within a tolerance, and sometimes without a
-result where the two touch. So all pairs are compared with an enumeration of all features in extended precision, and
-with Coal those in which it agrees with that; how many these are is printed, and asserted.
+a half-space. For a capsule and a box, Coal iterates (GJK, EPA) to a tolerance, and sometimes has no result if the two
+touch. So all pairs are compared with an enumeration of all features in extended precision, and with Coal those in which
+it agrees with that; how many these are is printed, and asserted.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ coal = pytest.importorskip("coal", reason="needs Coal: pip install coal")
 
 ROOT = Path(__file__).parents[2]
 EIGEN = Path("/usr/include/eigen3")
-PAIRS = 6_000  # Of each kind, in each round.
+PAIRS = 6_000  # Pairs of each kind in each round.
 ROUNDS = 2  # 167 for a million pairs of each kind.
 TOLERANCE = 1e-9
-APART = 1e-6  # Of the size: how far apart cores must be for round-off of 1e-15 to leave nine digits of a normal.
+APART = 1e-6  # Distance of cores at which a round-off error of 1e-15 leaves nine digits of a normal, by size.
 
 Array = NDArray[np.float64]
 Exact = NDArray[np.longdouble]
@@ -85,7 +85,7 @@ def some(rng: np.random.Generator, share: float, n: int) -> NDArray[np.bool_]:
 
 
 def segments(rng: np.random.Generator, n: int) -> Array:
-    """Start and way: of all lengths, some of them zero, some in whole numbers."""
+    """Start and displacement: of all lengths, some of them zero, some in whole numbers."""
     start, way = (power(rng, -3, 1, n) * rng.uniform(-1, 1, (n, 3)) for _ in range(2))
     whole = some(rng, 0.2, n)
     start, way = (np.where(whole, rng.integers(-2, 3, (n, 3)), x) for x in (start, way))
@@ -197,7 +197,7 @@ def exact_half_space(pairs: Array) -> tuple[Exact, Exact]:
 
 
 def exact_box(pairs: Array) -> tuple[Exact, Exact]:
-    """The same of capsules and boxes: the least over ends and edges, or the least way out by separating axes."""
+    """The same of capsules and boxes: the least over ends and edges, or the penetration depth by separating axes."""
     a, b, r, p, columns, half = np.split(pairs.astype(np.longdouble), [3, 6, 7, 10, 19], axis=1)
     R = columns.reshape(-1, 3, 3).transpose(0, 2, 1)
     a, u = (np.einsum("nij,ni->nj", R, x) for x in (a - p, b - a))
@@ -222,7 +222,7 @@ def exact_box(pairs: Array) -> tuple[Exact, Exact]:
 
 
 def gaps(kind: str, pairs: Array, normals: Array) -> Exact:
-    """How far the shapes of each pair are apart along its normal: at most their distance, for any unit vector."""
+    """Gap between the shapes of each pair along its normal: at most their distance, for any unit vector."""
     n = normals.astype(np.longdouble)
     a, b, r = np.split(pairs[:, :7].astype(np.longdouble), [3, 6], axis=1)
     lowest = np.minimum(dot(n, a), dot(n, b)) - r

@@ -19,7 +19,7 @@ from fpbm_cpp.io.capsule_gaps import link_frames, postures
 
 MOTIONS = int(os.environ.get("FPBM_MOTIONS", "20"))
 TICKS = 2000
-EVERY = 20  # So many ticks are between two postures that Coal measures: 20 ms.
+EVERY = 20  # Ticks between two postures that Coal measures: 20 ms.
 TABLE = fp.Cuboid(two_arms.pose([0.75, 0, 0.7], [0, 0, 0]), [0.3, 0.6, 0.02], name="table")
 
 
@@ -262,7 +262,7 @@ def test_frames_in_which_gaps_are_measured_are_the_robot_s(tmp_path: Path) -> No
 
 
 def test_srdf_of_a_robot(tmp_path: Path) -> None:
-    """Pairs by name, those of unknown links left out; a state of all joints is a posture to be accepted in."""
+    """Pairs by name, without pairs of unknown links; a state of all joints is a posture to be accepted in."""
     file, srdf = robot_file(tmp_path), tmp_path / "robot.srdf"
     file.write_text(re.sub("<cylinder[^>]*>", '<sphere radius="0.04"/>', file.read_text()))  # Fitted faster.
     robot = fp.Robot.from_urdf(file, base="planar")

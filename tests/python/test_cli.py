@@ -1,4 +1,4 @@
-"""The command line, above all what it says when something is wrong."""
+"""The command line, especially its error messages."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def assert_one_plain_line(text: str, *parts: str) -> None:
 
 @pytest.fixture
 def reproduction(monkeypatch: pytest.MonkeyPatch) -> package.Reproduction:
-    """The paper's runs and tables without its figures, in place of the whole."""
+    """The paper's runs and tables without its figures."""
     paper = package.load()
     results = [package.Result(case, paper.simulate(case.path, case.scheme)) for case in paper.cases]
     claims = [package.Claim("W is large", "corrected", "0")]

@@ -1,4 +1,4 @@
-"""The commands that move an arm: what they print and write, and what they say when something is wrong."""
+"""The commands that move an arm: their output, files and error messages."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def test_help_of_a_motion(name: str) -> None:
 
 
 def test_every_key_of_a_job_is_an_option() -> None:
-    """But for tables within tables, and for arms that take more than a line to say."""
+    """Except tables within tables, and arms with a description of more than a line."""
     options = {option.name for option in command.commands["track"].params}
     for section in ("path", "scheme", "run", "limits"):
         for kind in SECTIONS[section]:
@@ -308,7 +308,7 @@ def test_a_motion_without_a_sample_is_no_film() -> None:
     assert result.stderr == "Error: cannot write run.gif: run: has no samples to animate\n"
 
 
-# What is wrong
+# Errors
 
 
 TWO_BRANCHES = """<robot name="two"><link name="base"/><link name="camera"/><link name="hand"/>
@@ -508,7 +508,7 @@ def test_sweep_says_what_became_of_motions_that_stop() -> None:
 
 
 def interrupted(arguments: list[str], after: str, seconds: float) -> tuple[str, str, int]:
-    """What is printed from then on, errors, and exit code of a call that gets Ctrl-C so long after it prints this."""
+    """Later output, errors and exit code of a call that gets Ctrl-C after it prints this text and the delay is over."""
 
     def heed_interrupts() -> None:  # A shell lets its background jobs ignore them.
         signal.signal(signal.SIGINT, signal.SIG_DFL)
@@ -569,7 +569,7 @@ def test_tune_writes_a_job() -> None:
 
 
 class Shown:
-    """A viewer that ends at once."""
+    """A viewer that ends immediately."""
 
     def wait(self) -> None:
         click.echo("waited")
@@ -577,7 +577,7 @@ class Shown:
 
 @pytest.mark.parametrize("limits", [(), ("--limits",)])
 def test_view(limits: tuple[str, ...], monkeypatch: pytest.MonkeyPatch) -> None:
-    """Hands on the run that is asked for, to a viewer that ends at once."""
+    """Passes the requested run to a viewer that ends immediately."""
     shown = []
     monkeypatch.setitem(vars(viewer), "Viewer", lambda run, **how: shown.append((run, how)) or Shown())
     result = call("view", "panda", "--task", "pose", "--port", "9000", "--no-browser", "--hold", "1", *limits)
@@ -632,7 +632,7 @@ def test_ctrl_c_ends_the_viewer_while_it_starts(seconds: float) -> None:
 
 @pytest.mark.parametrize("task", ["position", "pose"])
 def test_servo(task: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Hands on what is asked for, to a page that ends at once."""
+    """Passes the request to a page that ends immediately."""
     shown = []
     monkeypatch.setitem(vars(viewer), "Servo", lambda *what, **how: shown.append((what, how)) or Shown())
     bounds = ["--limit-velocity", "0.5", "--limit-jerk", "1000"]

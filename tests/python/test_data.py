@@ -258,7 +258,7 @@ def test_defaults_and_usual_values_are_in_range(maker):
 
 @given(st.sampled_from([*PATHS.values(), *SCHEMES.values()]), st.floats(), st.data())
 def test_bounds_are_kept(maker, value, data):
-    """A number in range is taken as it is; another is refused by name and value."""
+    """A number in range is accepted unchanged; other numbers are rejected with name and value."""
     numbers = [each for each in parameters(maker).values() if each.type is float]
     parameter = data.draw(st.sampled_from(numbers))
     inside = parameter.low < value <= parameter.high or (value == parameter.low and not parameter.open_low)

@@ -1,4 +1,4 @@
-"""Every Python example runs as it stands and has a counterpart in C++."""
+"""Every Python example runs unchanged and has a counterpart in C++."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Arms written as C++ headers: what the header computes, and what the command says when something is wrong."""
+"""Arms written as C++ headers: the results of the header, and error messages of the command."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """The tracker through the real libfranka, against a simulated robot that speaks its protocol.
 
-That robot follows whatever it is sent. So the commands are checked here, by libfranka's own conditions.
+The simulated robot follows every command. Therefore the commands are checked here, by libfranka's own conditions.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import fpbm_cpp as fp
 
 franka = pytest.importorskip("pylibfranka", reason="pylibfranka cannot be imported", exc_type=ImportError)
 franky_sim = pytest.importorskip("franky_sim", reason="franky-sim cannot be imported", exc_type=ImportError)
-sys.path.insert(0, str(Path(__file__).parents[2] / "examples"))  # As for a script that lies there.
+sys.path.insert(0, str(Path(__file__).parents[2] / "examples"))  # As for a script in this folder.
 example = importlib.import_module("11_franka")
 
 PATH = fp.Circle(0.05, 2.0, time_law="quintic").in_plane("xy")
@@ -29,11 +29,11 @@ STREAM = 3.5  # [s]
 EPS = 1e-3
 ACCELERATION = 10.0 - EPS
 JERK = 5000.0 - EPS
-ROUNDING = 1 + 1e-8  # Of third differences.
+ROUNDING = 1 + 1e-8  # Rounding of third differences.
 
 
 def joint_limits(element: str, attribute: str) -> np.ndarray:
-    """What the URDF that the robot serves to libfranka tells of its seven joints."""
+    """Limits of the seven joints in the URDF that the robot serves to libfranka."""
     joints = [joint for joint in ET.fromstring(franky_sim.FR3_URDF).iter("joint") if joint.get("type") == "revolute"]
     values = np.array([float(joint.find(element).attrib[attribute]) for joint in joints])
     assert values.shape == (7,)
@@ -43,7 +43,7 @@ def joint_limits(element: str, attribute: str) -> np.ndarray:
 def derivative(t: np.ndarray, q: np.ndarray, order: int) -> np.ndarray:
     """By divided differences: where no time is left out, the finite differences that libfranka takes.
 
-    Over times left out they are means of those, so that the bounds hold for them as well.
+    Over times left out they are means of those, so that the bounds also hold for them.
     """
     for k in range(1, order + 1):
         q = k * np.diff(q, axis=0) / (t[k:] - t[:-k])[:, None]
@@ -54,7 +54,8 @@ def refused(t: np.ndarray, q: np.ndarray) -> set[str]:
     """Which conditions commands q [rad] at times t [s] break.
 
     Velocity: libfranka 0.21, joint_velocity_limits.h, with the position-based limits of the robot's URDF, at the
-    position commanded before. The rest: limitRate() in src/rate_limiting.cpp, where every clamp is a condition here.
+    position commanded before. The other conditions: limitRate() in src/rate_limiting.cpp, whose clamps are conditions
+    here.
     """
     lower, upper, fastest = (joint_limits("limit", name) for name in ("lower", "upper", "velocity"))
     offset = joint_limits("position_based_velocity_limits", "velocity_offset")
@@ -85,7 +86,7 @@ def from_rest_to_rest(ticks: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.
 
 @pytest.fixture(scope="module", autouse=True)
 def schedule():
-    """libfranka gives its thread the highest priority; the tests after these are to have none."""
+    """libfranka gives its thread the highest priority; later tests have normal priority."""
     before = os.sched_getscheduler(0), os.sched_getparam(0)
     yield
     os.sched_setscheduler(0, *before)
@@ -113,7 +114,7 @@ def motion(drive):
 
 
 def commands(motion) -> tuple[np.ndarray, np.ndarray]:
-    """What was sent, and in which millisecond of the robot's."""
+    """The commands, and the millisecond of the robot in which each was sent."""
     return np.rint(1e3 * (np.array(motion.time) - motion.time[0])), np.array(motion.q)[motion.sent]
 
 
@@ -122,7 +123,7 @@ def test_libfranka_has_nothing_to_refuse(motion):
     assert refused(*from_rest_to_rest(np.arange(len(motion.q)), np.array(motion.q))) == set()
     shares = motion.shares()
     assert max(shares.values()) <= ROUNDING
-    assert shares["velocity"] > 0.1  # It was a motion indeed.
+    assert shares["velocity"] > 0.1  # The arm moved.
     assert shares["jerk"] < 0.2  # Which the bare targets would not keep.
 
 

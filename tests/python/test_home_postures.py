@@ -1,4 +1,4 @@
-"""Clearance.from_urdf accepts robots' home postures with the default margin; what a start that is too close says."""
+"""Clearance.from_urdf accepts robots' home postures with the default margin; the error of a start that is too close."""
 
 from __future__ import annotations
 
@@ -202,7 +202,7 @@ def test_pieces_of_cut_triangles_are_inside(once) -> None:
 
 @with_robots
 def test_the_same_each_time(once) -> None:
-    """Every day of an arm whose fit is quick."""
+    """By default for an arm whose fit is fast."""
     urdf, tip, base, most = (*OTHERS["z1"][:3], 2) if "FPBM_ALL_HOMES" in os.environ else ARMS["ur5"]
     assert tuple(capsules_of(ROBOTS / urdf, tip, base, per_link=most)) == tuple(
         once(fitted, urdf, tip, base, most).capsules
@@ -245,7 +245,7 @@ def test_the_message_names_both_remedies() -> None:
     fp.Tracker(arm, fp.MVN(), q, clearance=fp.Clearance(capsules, allowed=eval(proposed[1])))
 
 
-# What decides where capsules are cut
+# Input of the cuts of capsules
 
 
 def test_a_face_that_is_cut_twice_is_covered() -> None:

@@ -1,4 +1,4 @@
-"""The upper body of a humanoid: targets of both hands, and what a posture below them leaves of the hands' motion."""
+"""The upper body of a humanoid: targets of both hands, and the effect of a posture level on the motion of the hands."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ DOF = 17
 TICK = 1e-3  # [s]
 
 # Targets, allowed steps and tolerances of Isaac Lab's test of its controller by Pink: isaac-sim/IsaacLab, BSD-3-Clause,
-# source/isaaclab/test/controllers/test_ik_configs/pink_ik_g1_test_configs.json. Of the left hand: position [m] and
-# quaternion (w, x, y, z) in the world. Those of the right hand are the mirror images. The robot's pelvis is at ROOT, a
-# step takes 20 ms, and all joints start at zero.
+# source/isaaclab/test/controllers/test_ik_configs/pink_ik_g1_test_configs.json. The left hand has position [m] and
+# quaternion (w, x, y, z) in the world. The targets of the right hand are the mirror images. The robot's pelvis is at
+# ROOT, a step takes 20 ms, and all joints start at zero.
 ROOT = np.array([[0.0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 1, 0.75], [0, 0, 0, 1]])
 STEP = 0.02  # [s]
 STEPS_TO_SETTLE = 50

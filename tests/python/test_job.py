@@ -1,4 +1,4 @@
-"""Jobs: what a file says is what the library makes, and what is wrong with one is said key by key."""
+"""Jobs: the library makes the objects of a file, and errors name the key."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def complaints(text: str) -> list[str]:
     return str(caught.value).splitlines()
 
 
-# What a job says is what the library makes.
+# The library makes the objects of a job.
 
 
 @pytest.mark.parametrize(
@@ -253,7 +253,7 @@ def test_a_scheme_has_the_damping_that_the_job_says() -> None:
     assert np.abs(undamped.run().qd[-1]).max() > 1e-3
 
 
-# What is left out
+# Omitted keys
 
 
 def test_what_was_taken_is_said() -> None:
@@ -386,7 +386,7 @@ def test_files_that_are_none(tmp_path: Path) -> None:
             read_job(tmp_path / "bad.toml")
 
 
-# What is wrong
+# Errors
 
 ARM = "[arm]\nkind = 'preset'\nname = 'panda'\n"
 SHAPES = "circle, lissajous, tricuspid, line, waypoints"

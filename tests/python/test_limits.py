@@ -25,7 +25,7 @@ def random_joints(rng, n):
 
 
 def quickest_stop(ruckig, qd, qdd, acceleration, jerk):
-    """Duration of a stop and its way, by Ruckig."""
+    """Duration and distance of a stop, by Ruckig."""
     given = ruckig.InputParameter(1)
     given.control_interface = ruckig.ControlInterface.Velocity
     given.current_position, given.current_velocity, given.current_acceleration = [0.0], [qd], [qdd]
@@ -136,7 +136,7 @@ def test_rows_are_kept_and_the_task_where_the_null_space_serves(level):
         elif kept.scale == 1:
             missed.append(np.linalg.norm(J @ (kept.u - desired)) / np.linalg.norm(J @ desired))
     assert len(missed) > 50
-    assert np.max(missed) < 5e-3  # Self-motion has a price, lest it grow where J and G are all but dependent.
+    assert np.max(missed) < 5e-3  # Self-motion has a cost, so that it stays bounded if J and G are almost dependent.
 
 
 def test_velocities_are_limited_too():

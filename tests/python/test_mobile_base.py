@@ -1,4 +1,4 @@
-"""A Panda on a mobile base: what the tip, the base's bounds and the weights do in example 18."""
+"""A Panda on a mobile base: the tip, the base's bounds and the weights of example 18."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 pytest.importorskip("cmeel")
-sys.path.insert(0, str(Path(__file__).parents[2] / "examples"))  # As for a script that lies there.
+sys.path.insert(0, str(Path(__file__).parents[2] / "examples"))  # As for a script in this folder.
 try:
     example = importlib.import_module("18_wipe_a_table")
 except SystemExit:
@@ -35,5 +35,5 @@ def test_the_tip_follows_3_m_within_the_base_s_bounds() -> None:
         assert np.all(abs(qdd) <= example.limits.acceleration + 1e-8)  # Round-off of q by dt².
         travel[weight] = np.linalg.norm(np.diff(q[:, :2], axis=0), axis=1).sum()
         if weight < 1:
-            assert abs(qd[:, :2]).max() == pytest.approx(0.2)  # The bounds are active, and the arm does the rest.
+            assert abs(qd[:, :2]).max() == pytest.approx(0.2)  # The bounds are active.
     assert travel[0.05] > 1.5 * travel[60.0] > 1.0

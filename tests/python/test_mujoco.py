@@ -12,7 +12,7 @@ import pytest
 import fpbm_cpp as fp
 
 mujoco = pytest.importorskip("mujoco")
-sys.path.insert(0, str(Path(__file__).parents[2] / "examples"))  # As for a script that lies there.
+sys.path.insert(0, str(Path(__file__).parents[2] / "examples"))  # As for a script in this folder.
 example = importlib.import_module("08_mujoco_panda")
 panda_mjcf = importlib.import_module("panda_mjcf")
 tray = importlib.import_module("19_mujoco_tray")
@@ -103,7 +103,7 @@ def test_the_tip_is_on_the_circle(motion):
 
 def test_the_arm_settles_after_the_push(motion):
     joints = motion.during("push", "q")
-    assert abs(joints - joints[0]).max() > 0.1  # It was pushed indeed.
+    assert abs(joints - joints[0]).max() > 0.1  # The push displaced the arm.
     assert motion.settled() < 1.5  # [s]
     assert last(motion, "push", "tip").max() < 1e-4
 
@@ -112,7 +112,7 @@ def test_no_bound_is_broken_at_any_step(motion):
     position, velocity = motion.clearance()
     assert np.all(position > 0)
     assert np.all(velocity > 0)
-    assert position.min() < 0.01  # Bounds were met indeed.
+    assert position.min() < 0.01  # Bounds were active.
     assert velocity.min() < 0.03
     assert np.all(abs(np.array(motion.torque)).max(axis=0) < panda_mjcf.TORQUE)
 
@@ -126,7 +126,7 @@ def test_torques_do_not_chatter(motion):
 @pytest.mark.parametrize("name", ["too far", "too near"])
 def test_out_of_reach_the_arm_rests(motion, name):
     tip = last(motion, name, "tip")
-    assert tip.min() > 0.05  # Out of reach indeed.
+    assert tip.min() > 0.05  # The target is unreachable.
     assert np.ptp(tip) < 1e-4
     assert abs(last(motion, name, "qd")).max() < 0.03
 

@@ -25,7 +25,7 @@ SCHEMES = {
 
 
 class Case:
-    """An arm in a random state, and what is asked of its tip."""
+    """An arm in a random state, and a reference of its tip."""
 
     def __init__(self, name, arm, task, seed):
         rng = np.random.default_rng(seed)
@@ -150,7 +150,7 @@ def test_singular_postures_are_damped_where_asked(name):
 
 
 def test_a_damped_motion_is_complete():
-    """Out to where the arm is nearly straight and back: there the radius tells."""
+    """To a nearly straight arm and back: there the radius has an effect."""
     path = fp.Line([0.055, 0.0], 2.0)
     q0 = np.array([-0.3, 0.6, -0.6, 0.6])
     run = fp.simulate(PLANAR, path, fp.FPBM(0.6, np.ones(4), 10, 25, singular_radius=0.05, null_damping=2.0), q0)

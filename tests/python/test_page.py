@@ -1,4 +1,4 @@
-"""The page that moves: its numbers are those of the package, and a visitor can do with it what it says."""
+"""The interactive page: its numbers are those of the package, and its controls work."""
 
 from __future__ import annotations
 
@@ -130,7 +130,7 @@ def test_the_papers_drift(page):
 
 
 def test_the_steps_of_a_visitor(page):
-    """By true events of a mouse: drag, let go, turn up the damping."""
+    """By true events of a mouse: drag, release, increase the damping."""
     page.reload()
     page.wait_for_function("window.fpbm")
     assert page.locator("#install").is_visible()
@@ -139,7 +139,7 @@ def test_the_steps_of_a_visitor(page):
     run(page, 1)
     page.locator("#rest").click()
     run(page, 1)
-    assert page.locator("#step-drag").get_attribute("class") == "now"  # Nobody has dragged yet.
+    assert page.locator("#step-drag").get_attribute("class") == "now"  # The user has not dragged yet.
     x, y = page.evaluate("fpbm.onPage(fpbm.show.goal)")
     page.mouse.move(x, y)
     page.mouse.down()
@@ -177,7 +177,7 @@ def test_let_it_drift(page, which):
 
 
 def test_every_control(page):
-    """Whatever is chosen while the arm moves, it goes on, within its limits."""
+    """After every choice during a motion, the arm continues to move within its limits."""
     rng = np.random.default_rng(0)
     page.evaluate("fpbm.pause()")
     for which, (arm, _, _, limits, _, _) in enumerate(ARMS):
@@ -244,7 +244,7 @@ def test_a_scheme_shows_what_it_takes(page, kind, seen):
 
 
 def test_words_about_an_arm_off_its_target(page):
-    """Without feedback a tip that is led off stays off, which is no lack of reach."""
+    """Without feedback, an initial tip error persists although the target is reachable."""
     begin(page, 0, scheme=2, damping=5, limited=1)
     page.evaluate("fpbm.show.restart()")
     x, y, _ = page.evaluate("[...fpbm.simulator.tip]")

@@ -21,7 +21,7 @@ STATES = 1000
 
 
 class Link(NamedTuple):
-    """A joint, and where it is seen from the one before."""
+    """A joint, and its placement in the frame of the previous joint."""
 
     placement: Array
     axis: Array
@@ -29,7 +29,7 @@ class Link(NamedTuple):
 
 
 class Robot(NamedTuple):
-    """An arm, and what the peers get in its place: the links, or a URDF and its tip where they read that themselves."""
+    """An arm, and its model for the peers: the links, or a URDF and its tip where they read that themselves."""
 
     arm: fp.SerialArm
     links: list[Link]
@@ -56,7 +56,7 @@ def frame(R: Array, p: Array) -> Array:
 
 
 def read_urdf(path: str, tip: str) -> tuple[list[Link], Array]:
-    """The least that reads a URDF, so that nothing is shared with the package's reader."""
+    """A minimal reader of URDF files, which shares no code with the package's reader."""
 
     def numbers(element: ElementTree.Element | None, key: str, default: str) -> Array:
         return np.array((default if element is None else element.get(key, default)).split(), dtype=float)
@@ -77,7 +77,7 @@ def read_urdf(path: str, tip: str) -> tuple[list[Link], Array]:
             links.insert(0, Link(after, axis / np.linalg.norm(axis), joint.get("type") == "prismatic"))
             after = placement
         tip = joint.find("parent").get("link")
-    # Each was stored with what follows it: shift by one.
+    # Each placement was stored with the next link: shift by one.
     placements = [after, *(link.placement for link in links)]
     return [link._replace(placement=p) for link, p in zip(links, placements)], placements[-1]
 
@@ -130,7 +130,7 @@ def pinocchio(robot: Robot) -> Kinematics:
 
 @functools.cache
 def import_kdl():
-    """PyKDL; Debian's by its file, since that lies among packages that are not for this environment."""
+    """PyKDL; Debian's by its file, since its folder has packages that are not for this environment."""
     spec = importlib.util.find_spec("PyKDL")
     if spec is None:
         file = Path("/usr/lib/python3/dist-packages", "PyKDL" + sysconfig.get_config_var("EXT_SUFFIX"))
@@ -307,7 +307,7 @@ def test_presets_are_the_others(name):
         np.testing.assert_allclose(preset.forward(q), other.forward(q), rtol=0, atol=tolerance)
         np.testing.assert_allclose(preset.jacobian(q, task="pose"), other.jacobian(q, task="pose"), atol=tolerance)
 
-    # None goes farther than the other; Kinova's URDF is wider than its guide, and UR's halves the elbow for planners.
+    # No range exceeds the other; Kinova's URDF is wider than its guide, and UR's halves the elbow for planners.
     limits = [limit for joint in ElementTree.parse(path).findall("joint") if (limit := joint.find("limit")) is not None]
     lower = [float(limit.get("lower", -np.inf)) for limit in limits[: preset.dof]]
     upper = [float(limit.get("upper", np.inf)) for limit in limits[: preset.dof]]

@@ -1,4 +1,4 @@
-"""Figures of any run: which panels, how they are laid out, and what a reader sees of them."""
+"""Figures of any run: their panels, layout and legibility."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Animations: their length, what moves in them, and that they are written whole or not at all."""
+"""Animations: their length, their moving parts, and that they are written whole or not at all."""
 
 from __future__ import annotations
 

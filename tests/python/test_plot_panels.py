@@ -1,4 +1,4 @@
-"""What each panel shows is what the run holds."""
+"""Each panel shows the numbers of the run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Capsules of the presets: they contain the links, wherever the arm is, and are not larger than they must be."""
+"""Capsules of the presets: they contain the links in every posture, and are not larger than necessary."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def written(name: str) -> dict[tuple[int, str], list[tuple[Array, Array, float]]
 
 
 def link_frames(arm: fp.SerialArm, q: Array) -> list[Array]:
-    """Of the base and of each joint after its motion, in the base frame."""
+    """Frames of the base and of each joint after its motion, in the base frame."""
     frames = [np.eye(4)]
     for joint, angle in zip(arm.joints, q):
         turn = np.eye(4)
@@ -116,7 +116,7 @@ def test_every_vertex_of_a_preset_is_inside_its_capsules(name: str) -> None:
         assert len(capsules[places[link][0], link]) > 1 or room <= ROUNDED + SLACK.get(name, 0.0), (link, room)
 
 
-# Franka's collision meshes of the Panda are convex, and those of links 5 and 7 do meet: the arm as it looks does not.
+# Franka's collision meshes of the Panda are convex, and the meshes of links 5 and 7 do meet: the links do not.
 CONVEX = {"panda"}
 APART = 0.005  # [m]
 

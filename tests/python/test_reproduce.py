@@ -144,7 +144,7 @@ def test_circles_one_after_another_share_their_ends(paper: cases.Paper, monkeypa
 
 @pytest.fixture
 def one_figure(paper: cases.Paper, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Fig. 2 alone, and no claims: for what does not depend on the rest."""
+    """Fig. 2 alone, and no claims: for tests that do not depend on the other figures."""
     only = [replace(case, figure=2 if case.figure == 2 else 0) for case in paper.cases]
     monkeypatch.setattr("fpbm_cpp.reproduce.load", lambda: replace(paper, cases=only))
     monkeypatch.setattr("fpbm_cpp.reproduce.check_claims", lambda paper, results: [])

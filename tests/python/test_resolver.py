@@ -234,7 +234,7 @@ def test_many_states_are_each_alone(scheme, task):
     many = scheme.resolve(arm, q, qd, x, xd, xdd, task=task)
     assert many.tobytes() == each.tobytes()
     assert scheme.resolve(arm, q.tolist(), qd.tolist(), x.tolist(), xd, xdd, task=task).tobytes() == each.tobytes()
-    # What is given once is for all.
+    # An argument without a row per state is for all states.
     held = np.array([scheme.resolve(arm, each, qd[0], x[0], xd[0], xdd[0], task=task) for each in q])
     assert scheme.resolve(arm, q, qd[0], x[0], xd[0], xdd[0], task=task).tobytes() == held.tobytes()
     assert scheme.resolve(arm, q[:0], qd[:0], x[0], xd[0], xdd[0], task=task).shape == (0, 7)

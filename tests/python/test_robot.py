@@ -64,7 +64,7 @@ class Reference:
     def set(self, q: Array, qd: Array) -> None:
         positions, rates = self.ratio @ q + self.offset, self.ratio @ qd
         whole, v = pin.neutral(self.model), np.zeros(self.model.nv)
-        for joint in self.model.joints[2:]:  # Those that are held, where they are nearest to 0.
+        for joint in self.model.joints[2:]:  # Held joints are at their positions nearest to 0.
             if joint.nq == 1:
                 low, high = self.model.lowerPositionLimit[joint.idx_q], self.model.upperPositionLimit[joint.idx_q]
                 whole[joint.idx_q] = min(max(0.0, low), high)
@@ -254,7 +254,7 @@ def test_a_tracker_of_a_robot_needs_a_stack(write) -> None:
 
 @pytest.mark.parametrize("level", ["acceleration", "velocity"])
 def test_a_grasp_holds_within_limits(level: str) -> None:
-    """The tray jumps beyond what the limits allow; positions, velocities and accelerations by differences of q.
+    """The tray jumps farther than the limits allow; positions, velocities and accelerations by differences of q.
 
     A tick by velocity moves the grasp by h²/2 of its acceleration, which no gain undoes within that tick.
     """

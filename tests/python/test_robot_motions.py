@@ -74,7 +74,7 @@ def poses(q: Array, frame: str) -> Array:
 
 
 def test_each_task_follows_its_path(run: fp.Run) -> None:
-    """From where its frame starts, to the end of the longest path."""
+    """From the start of its frame to the end of the longest path."""
     assert (run.t[-1], run.task, run.kind) == (2.5, "left", "pose")
     assert run.x.shape == (2501, 4, 4)
     for name in ("left", "right"):
@@ -101,7 +101,7 @@ def test_the_ticks_are_the_trackers(run: fp.Run) -> None:
 
 
 def test_task_says_what_x_is() -> None:
-    """Not what moves."""
+    """`task` does not change the motion."""
     stack = two_hands()
     right = fp.simulate(ROBOT, PATHS, SCHEME, READY, stack=stack, task="right", dt=0.01)
     left = fp.simulate(ROBOT, PATHS, SCHEME, READY, stack=stack, dt=0.01)
@@ -129,7 +129,7 @@ def test_a_grasp_is_led_as_seen_from_the_other_hand() -> None:
 
 
 def test_jacobians_are_those_of_the_led_tasks() -> None:
-    """By differences of what the tasks control."""
+    """By differences of the points of the tasks."""
     offset = np.eye(4)
     offset[:3, 3] = [0.1, -0.2, 0.3]
     stack = fp.Stack(

@@ -252,7 +252,7 @@ def test_what_other_libraries_have_for_arrays(q0, run, tmp_path):
         replace(run, options={"dt": {1, 2}}).save(tmp_path / "run.npz")
 
 
-# What a hostile or damaged file says in place of its path, and what is said of it.
+# The path in a hostile or damaged file, and the error message.
 NO_PATHS = {
     "another module's": ({"kind": "os.system"}, r"path.kind = 'os.system': must be one of circle, .*sequence"),
     "nothing": ({}, "path.kind: is missing"),

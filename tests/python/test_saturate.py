@@ -161,7 +161,7 @@ def test_joints_with_little_range_or_none_leave_the_task_to_others():
 
 
 def test_three_tasks_by_hand():
-    """The first is done by half, the second whole with what is left, the third contradicts the first."""
+    """The first level is scaled by one half, the second uses the remaining range, the third contradicts the first."""
     found = fp.saturate(
         [([[1, 0, 0]], [2]), ([[0, 1, 1]], [1.5]), ([[1, 0, 0]], [0])], lower=[-1, -0.5, -1], upper=[1, 0.5, 1]
     )

@@ -1,4 +1,4 @@
-"""Serial arms from joints, tables and presets, and what they say of themselves."""
+"""Serial arms from joints, tables and presets, and their representations."""
 
 import pickle
 
@@ -122,7 +122,7 @@ def test_followers_keep_their_bounds(seed):
         room[-1] += [joint.velocity - abs(ratio) * limits.velocity[0]]
         room[-1] += [joint.acceleration - abs(ratio) * limits.acceleration[0]]
     assert np.min(room) > -1e-12
-    np.testing.assert_allclose(np.min(room, axis=0)[2:], 0, atol=1e-12)  # No narrower than need be.
+    np.testing.assert_allclose(np.min(room, axis=0)[2:], 0, atol=1e-12)  # Not narrower than necessary.
 
 
 def test_a_joint_without_room_is_named():

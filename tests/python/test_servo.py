@@ -1,4 +1,4 @@
-"""The page with the handle: what is dragged there is followed, and what it says is what the arm does."""
+"""The page with the handle: the arm follows the handle, and the page shows the state of the arm."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ PANDA = fp.SerialArm.preset("panda")
 READY = np.array([0, -0.3, 0, -2.2, 0, 2.0, 0.785])
 PLANAR = fp.PlanarArm([1, 1, 1, 1])
 BENT = np.pi / np.array([12, 12, 15, 15])
-ALIKE = 2e-5  # viser does not move what is as close as numpy.allclose [m].
+ALIKE = 2e-5  # viser does not move an object if numpy.allclose holds [m].
 CLICK = SimpleNamespace(client="somebody", target=None)
 
 
@@ -245,7 +245,7 @@ def test_it_says_how_each_task_and_level_fares(stacked):
     levels = ["upright, place", "elbow", "turn", "home"]
     for text in (*(f"scale of {level}" for level in levels), *(f"from {name} to handle" for name in stacked.tip)):
         assert (text in says(stacked)) == ("home to" not in text), text
-    stacked.target = {"place": stacked.target["place"] + [2.0, 0, 0]}  # Out of reach.
+    stacked.target = {"place": stacked.target["place"] + [2.0, 0, 0]}  # An unreachable target.
     until(lambda: "Drag the handle into the workspace" in says(stacked))
     frame = stacked._loop.frame("place")[:3, 3]
     assert f"{np.linalg.norm(stacked.target['place'] - frame):.3f} m" in says(stacked)
@@ -372,7 +372,7 @@ def seen(page, servo, point):
 
 
 def drag(page, servo, goal):
-    """Takes the handle by the square between its axes, in the plane, and lets it go at a goal."""
+    """Takes the handle by the square between its axes, in the plane, and releases it at a goal."""
     handle = servo._scene.handles[0]
     grip = np.array([0.3, 0.3, 0.0]) * handle._gizmo.scale
     mouse(page, *(seen(page, servo, point + grip) for point in (handle.position, np.array([*goal, 0.0]))))
@@ -394,12 +394,13 @@ def visit(page, servo, text):
     page.goto(servo.url)
     eventually(page, servo._server.get_clients)
     page.get_by_text(text).wait_for()
-    page.add_style_tag(content=".mantine-Notifications-root { display: none }")  # That there is no graphics processor.
+    page.add_style_tag(content=".mantine-Notifications-root { display: none }")  # The warning that there is no graphics
+    # processor.
     page.wait_for_timeout(2000)  # The scene comes last.
 
 
 def test_dragged_in_a_browser(page, servo):
-    """By true mouse events: within reach, out of reach and back."""
+    """By true mouse events: to reachable and unreachable targets and back."""
     visit(page, servo, "from tip to handle")
     for goal in ([2.0, 2.5], [2.5, 1.0]):
         drag(page, servo, goal)

@@ -1,4 +1,4 @@
-"""The loop behind the handle: whatever is asked of it, the arm keeps its limits, follows where it can, and rests."""
+"""The loop behind the handle: for every input, the arm keeps its limits, follows if possible and comes to rest."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ def bounds(n=4, jerk=200.0):
 
 
 class Clock:
-    """One that goes when it is told."""
+    """A clock that the test advances."""
 
     def __init__(self):
         self.now = 100.0
 
     def __call__(self):
-        self.now += 1e-9  # No two targets come at once.
+        self.now += 1e-9  # Two targets never arrive at the same time.
         return self.now
 
 
@@ -84,7 +84,7 @@ KINDS = [("panda", "pose"), ("panda", "position"), ("planar", "pose"), ("planar"
 @settings(max_examples=15, deadline=None)
 @given(data=st.data())
 def test_limits_hold_wherever_the_handle_jumps(which, task, data):
-    """Near, far out of reach, through the base; with frames of any length, stops, and other schemes."""
+    """Near, unreachable, through the base; with frames of any length, stops, and other schemes."""
     loop, clock = a_loop(which, task)
     q0, start, ticks = loop.q, loop.target, []
     size = 3 if which == "panda" else 2
@@ -147,7 +147,7 @@ def test_the_status_is_the_worst_of_a_quarter_of_a_second():
 
 
 def test_through_a_singular_posture():
-    """The handle goes from one side of a planar arm's base to the other, through the stretched posture's line."""
+    """The handle moves from one side of a planar arm's base to the other, through the stretched posture's line."""
     loop, clock = a_loop("planar", "position")
     q0, ticks = loop.q, []
     for share in np.linspace(0, 1, 100):
@@ -211,7 +211,7 @@ def test_a_slow_machine_drops_time():
         assert len(loop.advance()) == pytest.approx(MOST / loop.dt, abs=1)
     target = moved(loop.target, [0.0, 0.1])
     loop.push(target)
-    for _ in range(100):  # A frame takes five times as long as what it simulates.
+    for _ in range(100):  # A frame takes five times as long as the simulated time.
         clock.now += 5 * MOST
         loop.push(target)
         ticks = loop.advance()
@@ -235,7 +235,7 @@ def test_the_strip_is_what_the_ticks_did():
     np.testing.assert_allclose(worst[:3, there].max(axis=1), expected[:3].max(axis=1), rtol=1e-12)
     assert worst[3, there].min() == expected[3].min()
     first = worst[:, there]
-    play(loop, clock, 0.52, 0.013)  # A peak keeps its height on its way.
+    play(loop, clock, 0.52, 0.013)  # A peak keeps its height while it moves along the strip.
     later = loop.strip.curves()[1]
     np.testing.assert_array_equal(later[:, ~np.isnan(later[0])][:, : first.shape[1]], first)
     play(loop, clock, 20)

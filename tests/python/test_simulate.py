@@ -1,4 +1,4 @@
-"""Whole motions from Python: the same as a plain NumPy rollout, and clear about what goes wrong."""
+"""Whole motions from Python: equal to a plain NumPy rollout, with clear error messages."""
 
 import threading
 
@@ -173,7 +173,7 @@ def test_bad_arguments(arm, circle, q0, change, words):
 
 
 def test_other_threads_run_meanwhile(arm, circle, q0):
-    """The interpreter's lock is released: two simulations at once finish and agree with one alone."""
+    """The interpreter's lock is released: two simultaneous simulations finish and agree with one alone."""
     scheme = fp.FPBM(0.6, W, 1, 1)
     runs = [None, None]
 

@@ -1,4 +1,4 @@
-"""Stacks of tasks from Python: what they follow, what they keep, and that one level is the tracker of that task."""
+"""Stacks of tasks from Python: their references and bounds, and that one level is the tracker of that task."""
 
 import pickle
 from dataclasses import replace

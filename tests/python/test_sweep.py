@@ -1,4 +1,4 @@
-"""Sweeps: the same motions as simulate()'s, whoever runs them, and clear about what is not done."""
+"""Sweeps: the same motions as simulate()'s, with every executor, and clear messages about missing motions."""
 
 import importlib.util
 import os
@@ -72,7 +72,7 @@ def same(a, b):
 
 
 def expect_run(sweep, i, k, run):
-    """Motion i, k is this run, summed up."""
+    """The key figures of motion i, k are those of this run."""
     size = np.abs(run.qd).max(axis=1)
     assert sweep.status[i, k] is run.status.code
     assert sweep.time[i, k] == run.status.time
@@ -85,7 +85,7 @@ def expect_run(sweep, i, k, run):
         "final_acceleration": np.abs(run.qdd[-1]).max(),
         "manipulability": run.manipulability().min(),
     }
-    tolerance = 1e-9 if run.scheme.level == "velocity" else 1e-12  # Of differences of velocities.
+    tolerance = 1e-9 if run.scheme.level == "velocity" else 1e-12  # Tolerance of differences of velocities.
     for name, value in expected.items():
         np.testing.assert_allclose(getattr(sweep, name)[i, k], value, rtol=tolerance, atol=1e-15, err_msg=name)
 
@@ -94,7 +94,8 @@ def expect_agreement(lanes, alone):
     """The same sweep to round-off."""
     np.testing.assert_array_equal(lanes.status, alone.status)
     for name in FIGURES:
-        differences = name in ("peak_acceleration", "final_acceleration")  # Of velocities, at velocity level.
+        differences = name in ("peak_acceleration", "final_acceleration")  # Differences of velocities, at velocity
+        # level.
         tolerance = 1e-10 if differences else 1e-12
         np.testing.assert_allclose(getattr(lanes, name), getattr(alone, name), tolerance, tolerance, err_msg=name)
 
@@ -120,7 +121,7 @@ def test_a_motion_does_not_feel_the_others_lanes(within):
     scheme = every_scheme(7)[-2]
     q0s = q0 + np.random.default_rng(4).uniform(-0.05, 0.05, (fp.LANES + 3, 7))
     bad = q0s.copy()
-    bad[1::2] = [0, 0, 0, -0.08, 0, 0.1, 0]  # Outstretched: the path leads out of reach.
+    bad[1::2] = [0, 0, 0, -0.08, 0, 0.1, 0]  # Outstretched: the path has unreachable points.
     how = {"task": task, "limits": None if within is None else narrow(arm, within)}
     good = fp.sweep(arm, path, scheme, q0s, 0.01, **how)
     mixed = fp.sweep(arm, path, scheme, bad, 0.01, **how)
@@ -188,7 +189,7 @@ def test_one_scheme_and_one_start(arm, circle, q0):
 
 
 def large(arm, dt=0.01, **how):
-    """Enough motions for many chunks; some stop early, some at once."""
+    """Enough motions for many chunks; some stop early, some immediately."""
     rng = np.random.default_rng(1)
     q0s = rng.uniform(-1.5, 1.5, (300, 4))
     q0s[7] = 0.0
@@ -362,7 +363,7 @@ def test_what_progress_raises_ends_the_sweep(arm):
 
 
 class Broken(Executor):
-    """Runs the first thing, and fails at the rest."""
+    """Runs the first job, and fails at all others."""
 
     def __init__(self):
         self.futures = []

@@ -1,4 +1,4 @@
-"""The filter of targets from Python: in the least time by Ruckig, behind a stream, and against lies."""
+"""The filter of targets from Python: in minimum time by Ruckig, for a stream, and for invalid messages."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def assert_within(x, xd, xdd, *, velocity, acceleration, jerk):
     assert np.abs(xd).max() <= velocity * (1 + 1e-12)
     assert np.abs(xdd).max() <= acceleration * (1 + 1e-12)
     assert np.abs(np.diff(xdd, axis=0)).max(initial=0) <= jerk * DT * (1 + 1e-9)
-    # The filter ends on a target that is a millionth of a tick's way off; and round-off.
+    # The filter ends on a target whose distance is a millionth of the displacement in a tick; and round-off.
     size = np.abs(x).max()
     assert np.abs(np.diff(x, 3, axis=0)).max(initial=0) <= jerk * DT**3 * (1 + 1e-5) + 8e-16 * size
 
@@ -135,7 +135,7 @@ def test_is_not_led_astray_by_lies():
         target_filter.advance()
     assert_within(*(np.array(column) for column in zip(*states)), **LINEAR)
     target_filter.reset([0.3, 0.1])
-    assert target_filter.push([0.0, 0.1], 0.5)  # On a clock that is learnt anew.
+    assert target_filter.push([0.0, 0.1], 0.5)  # The offset of the clock is estimated again.
     x, xd, _ = moved(target_filter, 2000)
     np.testing.assert_array_equal(x[-1], [0.0, 0.1])
     np.testing.assert_array_equal(xd[-1], 0)
@@ -143,7 +143,7 @@ def test_is_not_led_astray_by_lies():
 
 @pytest.mark.parametrize(("bounds", "longest"), [((1.5, 8.0, 300.0), 1.15), ((3.0, 3.0, 10.0), 1.4)])
 def test_orientations_end_at_rest_without_chatter(bounds, longest):
-    """Little later than the largest of their angles alone would, and the acceleration swings no more often."""
+    """Slightly later than for the largest angle alone, and the acceleration does not oscillate more often."""
     rng = np.random.default_rng(9)
     angular = dict(zip(ANGULAR, bounds))
     ratios = []
@@ -157,7 +157,7 @@ def test_orientations_end_at_rest_without_chatter(bounds, longest):
         assert np.abs(xd).max() <= bounds[0] * (1 + 1e-12)
         assert np.abs(xdd).max() <= bounds[1] * (1 + 1e-12)
         assert np.abs(np.diff(xdd, axis=0)).max() <= bounds[2] * DT * (1 + 1e-9)
-        # Up and down twice for its own way, and twice more for what the other axes add.
+        # Up and down twice for its own motion, and twice more for the effect of the other axes.
         assert np.abs(np.diff(xdd, axis=0)).sum(axis=0).max() < 16 * bounds[1]
         away = (x != target).any(axis=(1, 2)) | (xd != 0).any(axis=1) | (xdd != 0).any(axis=1)
         assert not away[-1]

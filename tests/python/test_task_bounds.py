@@ -1,4 +1,4 @@
-"""Bounds on coordinates of tasks from Python: they hold for any task, scheme and robot, and say what is wrong."""
+"""Bounds on coordinates of tasks from Python: they hold for any task, scheme and robot, and report errors."""
 
 import pickle
 
@@ -9,7 +9,7 @@ import fpbm_cpp as fp
 from fpbm_cpp.skeleton import link_frames
 
 DT = 1e-3
-# Of that many joints, with gains or without, which the tasks of a stack have.
+# Schemes for this number of joints, with gains, or without gains for a stack, whose tasks have them.
 SCHEMES = {
     "velocity": lambda n, gain: fp.WMVN(np.ones(n), k=5 * gain),
     "acceleration": lambda n, gain: fp.FPBM(0.6, np.ones(n), 10 * gain, 25 * gain),

@@ -1,4 +1,4 @@
-"""Whole motions within the joints' limits: what simulate() does where the limits do not matter, and the limits kept."""
+"""Whole motions within the joints' limits: equal to simulate() if the limits are inactive, and within the limits."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def test_free_of_limits_it_is_simulate(case):
 
 
 def test_what_a_sample_is(q0):
-    """Sample k is the tracker's state before tick k, and what tick k says."""
+    """Sample k is the tracker's state before tick k, and the status of tick k."""
     arm, scheme = fp.PlanarArm([1, 1, 1, 1]), fp.FPBM(0.6, W, 10, 25, null_damping=2)
     run = fp.track(arm, fp.Circle(0.45, 2.0), scheme, q0, dt=0.01, hold=0.1, limits=TIGHT, error_bound=0.05)
     tracker = fp.Tracker(arm, scheme, q0, dt=0.01, limits=TIGHT, error_bound=0.05)
@@ -97,7 +97,7 @@ def test_limits_are_kept_and_said(q0):
 
 
 def test_through_a_singular_posture():
-    """Stretched out, where simulate() gives up at once."""
+    """Stretched out, where simulate() stops immediately."""
     arm = fp.PlanarArm([1, 1, 1, 1])
     assert fp.track(arm, SMOOTH, fp.MAN(), np.zeros(4)).status.code is fp.Status.DAMPED
     stuck = fp.track(arm, SMOOTH, fp.MAN(), np.zeros(4), singular_radius=0)

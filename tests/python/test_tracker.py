@@ -1,4 +1,4 @@
-"""The tracker from Python: what it follows, what it keeps, and how near its saturation comes to a solver's."""
+"""The tracker from Python: its references and bounds, and its saturation compared with a solver."""
 
 from dataclasses import replace
 
@@ -22,7 +22,7 @@ def settling():
 
 
 def is_viable(limits, q, qd):
-    """Whether each joint can still stop in time, by the envelope -A h/2 + sqrt(2 A (way + A h^2/8)) of either end."""
+    """Whether each joint can still stop in time, by the envelope -A h/2 + sqrt(2 A (d + A h^2/8)) at distance d."""
     c = limits.acceleration * DT / 2
 
     def stops(way, speed):
@@ -183,7 +183,7 @@ def test_objectives_that_need_the_arm(panda):
 @pytest.mark.parametrize("make", [fp.MAN, lambda **how: fp.FPBM(0.6, np.ones(7), 10, 25, **how)], ids=["MAN", "FPBM"])
 def test_self_motion_comes_to_rest(panda, make):
     def speed(scheme, **options):
-        """Of the fastest joint after a motion and 10 s at rest."""
+        """Speed of the fastest joint after a motion and 10 s at rest."""
         tracker = fp.Tracker(panda, scheme, BENT, task="pose", **options)
         follower = tracker.follow(fp.Circle(0.1, 5.0, time_law="quintic").in_plane("yz"))
         for _ in range(15_000):
@@ -269,7 +269,7 @@ def test_a_tick_without_active_limits_is_a_step_of_rk4(name, task):
     wide = replace(limits, velocity=100 * limits.velocity, acceleration=100 * limits.acceleration)
     q0 = np.array([0.3, 0.5, 0.2, -1.5, 0.1, 1.2, 0.4])[: arm.dof]
     scheme = fp.FPBM(0.6, np.ones(arm.dof), k1=10, k2=25, null_damping=2)
-    for speed, same in ((0.01, True), (5.0, False)):  # [m/s], of a target that leaves the tip at once.
+    for speed, same in ((0.01, True), (5.0, False)):  # [m/s], of a target that leaves the tip immediately.
         trackers = [fp.Tracker(arm, scheme, q0, task=task, limits=each) for each in (limits, wide)]
         x, xd = np.array(trackers[0].tip), np.zeros(6 if task == "pose" else 3)
         xd[0] = speed

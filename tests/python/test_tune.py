@@ -1,4 +1,4 @@
-"""Tuning: never worse than the baseline, the same to the last bit whoever runs it, and what it says is what happens."""
+"""Tuning: never worse than the baseline, equal to the last bit with every executor, and true in its reports."""
 
 import subprocess
 import sys
@@ -389,7 +389,7 @@ def test_a_search_finds_the_least():
     for _ in range(30):
         assert ((points >= 0) & (points <= 1)).all()
         scores = np.sum((points - goal) ** 2, axis=1) + 1
-        scores[points[:, 0] < 0.1] = np.nan  # Infeasible, and no way out.
+        scores[points[:, 0] < 0.1] = np.nan  # Infeasible region.
         scored += scores.tolist()
         points = seeking.send(scores)
     assert np.nanmin(scored) < 1.001

@@ -1,4 +1,4 @@
-"""Chains read from URDF files, and what is said of files that have none."""
+"""Chains read from URDF files, and error messages for files without a chain."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def transform(xyz: Sequence[float] = (0, 0, 0), rpy: Sequence[float] = (0, 0, 0)
 
 
 def moved(type: str, axis: Sequence[float], q: float) -> np.ndarray:
-    """What a joint adds at position q."""
+    """The displacement of a joint at position q."""
     T = np.eye(4)
     direction = np.asarray(axis) / np.linalg.norm(axis)
     if type == "prismatic":
@@ -106,7 +106,7 @@ def write(tmp_path: Path) -> Callable[[str | bytes], Path]:
 
 
 def refusal(file: Path, tip: str = "tip", base: str | None = None) -> str:
-    """What is said of a file, which must be one line, soon, and name the file."""
+    """The message about a file, which must be one line, soon, and name the file."""
     start = time.process_time()
     with pytest.raises(ValueError, match=r".") as caught:
         read_urdf(file, tip, base)
@@ -123,13 +123,13 @@ def refusal(file: Path, tip: str = "tip", base: str | None = None) -> str:
 def attempt(file: Path, tip: str) -> tuple[tuple[list[Joint], np.ndarray] | None, str]:
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # Of joints that are held.
+            warnings.simplefilter("ignore")  # Warnings about joints that are held.
             return read_urdf(file, tip), ""
     except ValueError as error:
         return None, str(error)
 
 
-# What is read
+# Read
 
 
 def test_names_types_and_bounds(write) -> None:
@@ -168,7 +168,7 @@ def test_jerk_and_a_frankas_bound_on_velocity_are_read_where_they_are_stated(wri
 
 
 def test_acceleration_is_read_where_it_is_stated(write) -> None:
-    """Of a leader it is narrowed as its velocity is."""
+    """The acceleration of a leader is reduced like its velocity."""
     limit = '<limit lower="-1" upper="2" velocity="3" acceleration="{}"/>'
     (a, b), _ = read_urdf(write(three_links(Z + limit.format(8), Z + limit.format("1e2"))), "tip")
     assert (a.acceleration, b.acceleration) == (8, 100)
@@ -357,7 +357,7 @@ def test_continuous_joint_is_bounded_by_those_that_mimic_it(write) -> None:
 
 
 def test_mimic_of_a_joint_between_them_that_is_elsewhere(write) -> None:
-    """b mimics c, which mimics a: c is off the way, yet tells how b follows a."""
+    """b mimics c, which mimics a: c is not between base and tip, but determines how b follows a."""
     text = robot(
         link("base", "mid", "tip", "eye"),
         joint("a", "base", "mid"),
@@ -449,7 +449,7 @@ def test_follower_is_held_where_the_base_is_below_its_leader(write) -> None:
     assert refusal(file, "far", "mid") == "all moving joints are held: 'b': at least one must move"
 
 
-# What is refused
+# Refused
 
 
 def with_number(text: str) -> str:
@@ -531,7 +531,7 @@ REFUSED = {
     two_links(joint("a", "base", "tip"), link("x", "y"), joint("b", "x", "y"), joint("c", "y", "x")): (
         "its links form a loop: 'x', 'y', 'x'"
     ),
-    # The way.
+    # The joints between base and tip.
     two_links(joint("a", "base", "tip", type="fixed")): (
         "no joints move between base 'base' and tip 'tip': must be 1 to 64"
     ),
@@ -692,7 +692,7 @@ def test_hostile(make: Callable[[], str | bytes], message: str, write) -> None:
 def test_gigantic_file(tmp_path: Path) -> None:
     file = tmp_path / "big.urdf"
     with open(file, "wb") as out:
-        out.truncate(1 << 40)  # A hole, which takes no room on the disk.
+        out.truncate(1 << 40)  # A hole, which takes no disk space.
     assert refusal(file) == "has more than 16 MiB"
 
 
@@ -735,7 +735,7 @@ def test_damaged_file_is_read_or_refused(at: float, length: int, instead: str, w
         assert np.all(np.isfinite(chain[1]))
 
 
-# Robots of others
+# Robots of other packages
 
 
 def robots() -> Path | None:

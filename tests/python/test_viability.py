@@ -1,4 +1,4 @@
-"""What a joint may do in the next tick against TSID's bounds (Del Prete 2018), for random joints in random states."""
+"""The viable accelerations of a joint against TSID's bounds (Del Prete 2018), for random joints in random states."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def their_bounds(states: Array, tick: float) -> Array:
 
 
 def random_states(rng: np.random.Generator, tick: float) -> Array:
-    """Joints and states: a row each, many of them on the edge of what can stop in continuous time."""
+    """Joints and states: a row each, many of them at the limit of stopping in continuous time."""
     middle, reach = rng.uniform(-3, 3, JOINTS), 10 ** rng.uniform(-1, 0.5, JOINTS)
     lower, upper = middle - reach, middle + reach
     velocity, acceleration = 10 ** rng.uniform(-1, 1, JOINTS), 10 ** rng.uniform(0, 2, JOINTS)

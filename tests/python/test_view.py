@@ -1,4 +1,4 @@
-"""The viewer: what it shows is the run, whoever asks for it, and nothing at the page breaks it."""
+"""The viewer: it shows the run for every caller, and no action on the page breaks it."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from fpbm_cpp.viewer.scene import Links, Meshes, along
 
 READY = np.array([0, -0.3, 0, -2.2, 0, 2.0, 0.785])
 Q0 = np.pi / np.array([12, 12, 15, 15])
-CLICK = SimpleNamespace(client="somebody", target=None)  # What the page's own events have and ours have not.
+CLICK = SimpleNamespace(client="somebody", target=None)  # Attributes of the page's own events.
 
 
 def fpbm(n=4, **options):
@@ -336,7 +336,7 @@ def test_what_cannot_be_run_is_refused_and_the_rest_goes_on(viewer):
     assert "complete" in say(viewer)
     viewer._controls._sliders["alpha"].value = -1.0
     viewer._controls._on_update(CLICK)
-    viewer._controls._sliders["alpha"].value = 0.5  # Back to what is shown.
+    viewer._controls._sliders["alpha"].value = 0.5  # Back to the shown value.
     viewer._controls._on_update(CLICK)
     assert "complete" in say(viewer)
 
@@ -475,7 +475,7 @@ def test_rotation_upside_down():
 
 
 def with_mimic():
-    """A rail, and a joint that follows another by a half."""
+    """A rail, and a joint that mimics another by a half."""
     frame = np.eye(4)
     frame[:3, :3] = fp.rotation([0.3, -0.8, 0.4])
     frame[:3, 3] = [0.2, 0.1, 0.4]
@@ -724,7 +724,7 @@ def page(tmp_path):
 
 
 def picture(page, viewer):
-    """What the browser draws of the scene, small, once it has drawn what it was sent."""
+    """The browser's image of the scene, small, after it has drawn all messages."""
     pictures = []
     (client,) = viewer._server.get_clients().values()
     thread = threading.Thread(target=lambda: pictures.append(client.get_render(120, 160, transport_format="png")))

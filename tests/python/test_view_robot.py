@@ -40,7 +40,7 @@ def reach(robot, q0, **how):
 
 @pytest.mark.parametrize("base", [None, "planar"])
 def test_the_model_of_a_robot_moves_as_the_robot_does(tmp_path, base):
-    """Also what it carries on a base that moves, and joints that it holds."""
+    """Also its payload on a base that moves, and joints that it holds."""
     file, robot = torso(tmp_path, base, neck=0.4)
     rng = np.random.default_rng(1)
     server = viser.ViserServer("127.0.0.1", 0, verbose=False)
@@ -120,11 +120,11 @@ def test_each_hand_has_a_handle():
             assert f"from {name} to handle" in servo._readout._table.content
         lines = servo._scene._way.points
         ends = {name: np.linalg.norm(lines - servo.tip[name][:3, 3], axis=2).min() for name in HANDS}
-        assert max(ends.values()) < 1e-2  # Of both hands.
+        assert max(ends.values()) < 1e-2  # The lines of both hands.
 
 
 def test_a_level_that_waits_is_named():
-    """And the joint limits, which do not slow the hands, are not said to."""
+    """The page does not report joint limits that do not slow the hands."""
     with hands() as servo:
         goal = servo.target["left_tip"].copy()
         goal[:3, 3] += [0.1, 0.1, 0.15]

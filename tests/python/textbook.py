@@ -1,4 +1,4 @@
-"""The textbook formulas in plain NumPy, with explicit pseudoinverses: what the library is compared with."""
+"""The textbook formulas in plain NumPy, with explicit pseudoinverses, as a reference for the library."""
 
 from __future__ import annotations
 

@@ -47,7 +47,8 @@ def write(robots: Path, folder: Path) -> tuple[Path, Path]:
 class Bodies:
     """Meshes of a robot's links and of boxes around it, as Coal measures them.
 
-    Pairs are all but those of one moving link, those of names in `but`, and boxes with links that nothing moves.
+    Pairs are all except pairs of one moving link, pairs of names in `but`, and pairs of boxes and links that nothing
+    moves.
     """
 
     def __init__(

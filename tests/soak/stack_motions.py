@@ -2,7 +2,7 @@
 
     python tests/soak/stack_motions.py [--motions 10000] [--rests 1000] [--seed 0]
 
-A motion has targets that jump, conflict and are beyond reach, on one to four levels that are switched and reordered
+A motion has targets that jump, conflict and are unreachable, on one to four levels that are switched and reordered
 meanwhile; at its end stop() brings the arm to rest. A rest has targets that do not change for 40 s. Fails if a motion
 exceeds a bound by more than 1e-9 or does not stop, or if more than 1 % of the rests move after 40 s. Third differences
 of q are printed only: round-off dominates them. They are checked by second differences of commanded velocities.
@@ -122,8 +122,11 @@ def targets(rng: np.random.Generator, begun: Start, size: float) -> dict[str, An
 
 
 def excess(limits: fp.JointLimits, q: Array, qd: Array) -> list[float]:
-    """Of the bounds: positions [rad]; velocities, accelerations and jerks as shares, by differences of q, and the last
-    two by differences of the commanded velocities as well, which have fewer digits to lose."""
+    """Largest excess over the bounds: positions [rad]; velocities, accelerations and jerks as shares.
+
+    All are differences of q. Accelerations and jerks are also differences of the commanded velocities, which lose fewer
+    digits.
+    """
     by_q = [np.diff(q, k, axis=0) / DT**k for k in (1, 2, 3)]
     by_qd = [np.diff(qd, k, axis=0) / DT**k for k in (1, 2)]
     bounds = [limits.velocity, limits.acceleration, limits.jerk]

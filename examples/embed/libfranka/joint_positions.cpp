@@ -41,7 +41,7 @@ int main(int argc, char** argv) {
       return stopping && speed < 1e-9 ? franka::MotionFinished(command) : command;
     };
 
-    // The tracker bounds accelerations, not jerks, and the robot refuses jerks above 5000 rad/s³. stop() makes such
+    // The tracker bounds accelerations, not jerks, and the robot refuses jerks above 5000 rad/s³. stop() causes larger
     // jerks, and so does a joint that reaches a bound; libfranka's rate limiter removes them.
     constexpr bool kLimitRate = true;
     robot.control(callback, franka::ControllerMode::kJointImpedance, kLimitRate);

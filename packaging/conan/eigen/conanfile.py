@@ -1,4 +1,4 @@
-"""The system's Eigen, in place of Conan Center's recipe of that name."""
+"""The system's Eigen instead of Conan Center's recipe of that name."""
 
 import os
 

@@ -23,7 +23,7 @@ APART = 0.9  # Cosine of the least angle between two of these lines.
 BALL = 0.1  # Shorter capsules give two starts, one of them longer; the points are scaled to a ball of radius 1.
 ACTIVE = 40  # Points in the first search; points outside its result are added.
 GOLDEN = (np.sqrt(5.0) - 1) / 2
-ROUNDS = 24  # Of the golden section on a line: the final interval is 1e-5 of the range of radii.
+ROUNDS = 24  # Steps of the golden section on a line: the final interval is 1e-5 of the range of radii.
 MARKS = (np.sqrt(2.0), np.pi)  # Incommensurable, so that points with equal marks are equal up to round-off.
 ROOM = 1e-12  # Slack of the radius, relative to the coordinates, for round-off in distance computations.
 
@@ -153,7 +153,7 @@ def _on_lines(origins: Array, directions: Array, points: Array, radii: Array) ->
 
     least = np.max(d + radii, axis=1)
     middles = (s.min(axis=1) + s.max(axis=1)) / 2
-    most = np.max(np.hypot(s - middles[:, None], d) + radii, axis=1)  # Of a ball.
+    most = np.max(np.hypot(s - middles[:, None], d) + radii, axis=1)  # Radius of a ball.
 
     def radius(x: Array) -> Array:  # The slope of the volume at the least radius may be infinite in r, not in x.
         return np.asarray(least + (most - least) * x * x)

@@ -25,7 +25,7 @@ FIRST = 2  # Number of postures of which a single one makes a pair count: joints
 OFTEN = 0.25  # Fraction of the postures that makes a pair count.
 OPEN = 3.0  # [rad] or [m], range of an unbounded joint on each side of zero.
 NORMALS = 200  # Directions of the first search for a gap between hulls.
-SPREADS = 0.1 * 0.6 ** np.arange(8)  # Of directions about the best direction, in each round of the search.
+SPREADS = 0.1 * 0.6 ** np.arange(8)  # Spread about the best direction in each round of the search.
 
 
 class Part(NamedTuple):

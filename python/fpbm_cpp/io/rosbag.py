@@ -69,7 +69,7 @@ def _messages(run: Run, types: Any, frame: str, trajectory: bool) -> Iterator[tu
 
 
 def _poses(run: Run, x: Array, reference: bool = False) -> tuple[Array, Array]:
-    """Positions in space, and quaternions: for a position task, those of the arm; for the reference, the identity."""
+    """Positions in space, and quaternions: for a position task, the arm's; for the reference, the identity."""
     if x.ndim == 3:
         return x[:, :3, 3], quaternions(x[:, :3, :3])
     if isinstance(run.arm, PlanarArm):  # In the xy plane.

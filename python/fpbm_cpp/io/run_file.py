@@ -24,7 +24,7 @@ from . import write_whole
 
 FORMAT = "fpbm_cpp run"
 KINDS: dict[str, Makers] = {"arm": ROBOTS, "path": EVERY_PATH, "scheme": SCHEMES}
-VERSION = 1  # Of the format; incremented for each format that older packages cannot read.
+VERSION = 1  # Version of the format; incremented for each format that older packages cannot read.
 
 
 def save(run: Run, file: str | os.PathLike[str], note: Any, seed: Any) -> None:

@@ -13,7 +13,7 @@ from .xml_file import Element, Kept, named, read_xml
 
 # Attributes that are read, by their elements.
 LIMITS = ("lower", "upper", "velocity", "acceleration", "jerk")
-ENVELOPE = ("velocity_offset", "deceleration_limit")  # Of Franka: bound on velocity as a function of position.
+ENVELOPE = ("velocity_offset", "deceleration_limit")  # Franka's element: bound on velocity as a function of position.
 KEPT: Kept = {
     ("robot",): {"link": ("name",), "joint": ("name", "type")},
     ("robot", "joint"): {

@@ -16,7 +16,7 @@ from .mesh_file import find_mesh, read_mesh
 from .urdf import pose
 from .xml_file import Element, Kept, named, read_xml
 
-SIDES = 64  # Of the prism around a cylinder, which is 0.12 % wider.
+SIDES = 64  # Sides of the prism around a cylinder, which is 0.12 % wider.
 SHAPES = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",), "capsule": ("radius", "length")}
 KEPT: Kept = {
     ("robot",): {"link": ("name",)},

@@ -89,7 +89,7 @@ class JobError(ValueError):
 
 @contextmanager
 def job_errors() -> Iterator[None]:
-    """Raise JobError, with the key of the job, in place of ParameterError."""
+    """Raise JobError, with the key of the job, instead of ParameterError."""
     try:
         yield
     except ParameterError as error:

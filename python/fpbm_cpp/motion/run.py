@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-Paths: TypeAlias = Path | Mapping[str, Path]  # Of the task that follows a path, or of several tasks by name.
+Paths: TypeAlias = Path | Mapping[str, Path]  # Path of one task, or paths of several tasks by name.
 ARRAYS = ("t", "q", "qd", "qdd", "x", "x_ref", "error")
-LIMITED = ("scale", "saturated", "clearance")  # Of runs within joint limits, and with a clearance.
+LIMITED = ("scale", "saturated", "clearance")  # Arrays of runs within joint limits, or with a clearance.
 OF_STACKS = ("scales", "task_errors")
 
 
@@ -74,7 +74,7 @@ class Run:
     t : numpy.ndarray, shape (N,)
         Times [s].
     q, qd, qdd : numpy.ndarray, shape (N, n)
-        Joint positions [rad], velocities [rad/s], accelerations [rad/s^2]; for a prismatic joint, read m in place of
+        Joint positions [rad], velocities [rad/s], accelerations [rad/s^2]; for a prismatic joint, read m instead of
         rad. qdd of track() is the mean over the tick that starts at the sample. qdd of simulate() at velocity level is
         from finite differences.
     x, x_ref : numpy.ndarray, shape (N, 2), (N, 3) or (N, 4, 4)
@@ -179,7 +179,7 @@ class Run:
 
     @property
     def tips(self) -> list[FrameTask]:
-        """The frames that are drawn as tips: the tip of an arm; for a Robot, those of the tasks that follow paths."""
+        """The frames that are drawn as tips: the tip of an arm; the frames of tasks with paths of a Robot."""
         if not isinstance(self.arm, Robot) or self.stack is None:
             return [PositionTask()]
         return [self.stack.follower(name) for name in self.paths]
@@ -201,7 +201,7 @@ class Run:
 
     @property
     def limits(self) -> JointLimits:
-        """The joint limits given to track(); otherwise those of the arm."""
+        """The joint limits given to track(); otherwise the limits of the arm."""
         return self.options.get("limits") or self.arm.limits
 
     def manipulability(self) -> Array:
@@ -220,7 +220,7 @@ class Run:
         return np.array([arm.jacobian(q, task=self.kind) for q in self.q]).reshape(-1, self.error.shape[1], arm.dof)
 
     def arrays(self) -> dict[str, Any]:
-        """All arrays by name; those of limits, a clearance and a stack only if the run has them."""
+        """All arrays by name; the arrays of limits, a clearance and a stack only if the run has them."""
         arrays = {name: getattr(self, name) for name in (*ARRAYS, *LIMITED, *OF_STACKS)}
         return {name: np.asarray(array) for name, array in arrays.items() if array is not None}
 

@@ -48,7 +48,7 @@ class Sweep:
         Largest distance of the tip from its reference [m], and angle between its orientation and its reference [rad],
         which is 0 if the task leaves the orientation free.
     peak_velocity, final_velocity, peak_acceleration, final_acceleration
-        Of the joints [rad/s], [rad/s^2]; for a prismatic joint, read m in place of rad. At velocity level,
+        Of the joints [rad/s], [rad/s^2]; for a prismatic joint, read m instead of rad. At velocity level,
         accelerations are finite differences of the velocities.
     manipulability
         The least sqrt(det(J J')) of the task during the motion (Yoshikawa, 1985).

@@ -84,7 +84,7 @@ class Handle:
         self._gizmo.wxyz, self._gizmo.position = SO3.from_matrix(frame[:3, :3]).wxyz, self._held * frame[:3, 3]
 
     def follow(self, frame: Array) -> None:
-        """Show the task's frame, and follow the frame in the coordinates that the task leaves free."""
+        """Show the task's frame, and follow the frame in the coordinates that the task does not select."""
         self._frame.position, self._frame.wxyz = frame[:3, 3], SO3.from_matrix(frame[:3, :3]).wxyz
         self._carrier.position = (1.0 - self._held) * frame[:3, 3]
 

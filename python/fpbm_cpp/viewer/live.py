@@ -19,7 +19,7 @@ FAIR = "#8A6100"
 WHOLE = 0.999  # Scale of a level that is not slowed, up to round-off.
 NEAR = 0.01  # Distance of a joint to an end of its range [rad].
 COLOURS = {Status.OK: GOOD, Status.DAMPED: FAIR, Status.SLOWED: FAIR, Status.BLOCKED: FAIR}
-# What the user can do on the page.
+# The actions of the user on the page.
 HINTS = {
     Status.DAMPED: "The tip follows in all other directions.",
     Status.SLOWED: "The tip follows as fast as the joint limits admit.",

@@ -24,7 +24,7 @@ from .obstacles import Obstacles
 from .strip import Strip
 from .targets import Targets
 
-MOST = 0.1  # Largest simulated time per call [s]; the rest of the elapsed time is dropped.
+MOST = 0.1  # Largest simulated time per call [s]; the remaining elapsed time is dropped.
 SAID = 0.25  # The status is the worst of this time [s], because a tick is too short to read.
 
 

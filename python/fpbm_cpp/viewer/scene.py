@@ -72,7 +72,7 @@ class Meshes:
             self._place()
 
     def configuration(self, q: Array) -> Array:
-        """Positions of the joints in the file: those of the robot; for others, the fixed position or 0."""
+        """Positions of the joints in the file: the robot's positions; for other joints, the fixed position or 0."""
         own = self._held | dict(zip(self._arm.joint_names, q))
         return np.array([own.get(name, 0.0) for name in self.robot.actuated_joint_names])
 

@@ -9,7 +9,7 @@ from .._types import Array
 from ..arms import JointLimits
 
 SECONDS = 10.0
-POINTS = 200  # Of a curve.
+POINTS = 200  # Points of a curve.
 
 
 class Strip:
@@ -17,7 +17,7 @@ class Strip:
 
     shares has a row for each quantity and a column for each tick of the last ten seconds, shape (4, N); 0 without a
     bound. A stack has a scale for each level, shape (3 + levels, N). The jerk of a tick is the difference of its mean
-    acceleration from that of the previous tick, divided by the length of a tick.
+    acceleration from the mean acceleration of the previous tick, divided by the length of a tick.
     """
 
     def __init__(self, limits: JointLimits, dt: float, levels: int = 1) -> None:

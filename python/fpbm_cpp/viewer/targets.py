@@ -15,7 +15,7 @@ from ..tasks import TASKS, PostureTask, Stack, Task
 
 REPEAT = 0.1  # A handle without events is at rest: its target is repeated after this time [s].
 FILTERED = ("position", "pose")  # Tasks with a filter for targets; targets of other tasks are references.
-ROUND_OFF = 1e-8  # Of the entries of a rotation.
+ROUND_OFF = 1e-8  # Tolerance of the entries of a rotation.
 TIP = "tip"  # Name of the only task without a stack.
 
 

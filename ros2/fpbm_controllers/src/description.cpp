@@ -66,7 +66,7 @@ namespace {
                                    [&](const auto& other) { return other.joint.name == joint.mimic->joint_name; });
   if (leader == tree.joints.end()) {
     throw std::invalid_argument("joint '" + joint.name + "': it follows joint '" + joint.mimic->joint_name +
-                                "', which must be between base_frame and a frame as well");
+                                "', which must also be between base_frame and a frame");
   }
   return {static_cast<int>(leader - tree.joints.begin()), joint.mimic->multiplier, joint.mimic->offset};
 }
@@ -94,7 +94,7 @@ fpbm::Tree<> tree_of(const std::string& robot_description, const std::string& ba
       }
       base_in_fork = base_in_fork * origin_of(**down);
     }
-    fpbm::Transform<> place = inverse(base_in_fork);  // In the frame of the tree's link that carries what follows.
+    fpbm::Transform<> place = inverse(base_in_fork);  // In the frame of the tree's link that carries the next joint.
     int carrier = 0;
     for (; up != to_link.end(); ++up) {
       place = place * origin_of(**up);

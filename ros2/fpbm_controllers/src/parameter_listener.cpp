@@ -38,7 +38,7 @@ using Parameters = rclcpp::node_interfaces::NodeParametersInterface;
   return false;
 }
 
-/// All that were given must be declared by now, but for what ROS reads itself.
+/// All given parameters must be declared by now, except the parameters of ROS.
 void require_known(const Parameters& parameters) {
   constexpr std::array<const char*, 5> kOfRos{"type", "fallback_controllers", "node_options_args", "qos_overrides.",
                                               "async_parameters."};

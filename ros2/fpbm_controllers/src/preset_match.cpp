@@ -67,7 +67,7 @@ void require_match(const fpbm::Chain<>& described, const std::string& tip, const
                                   name + ": give the preset of the robot, or none and limits.acceleration");
     }
     for (std::size_t i = 0; i < j; ++i) {
-      const std::string other = " of its axis from that of joint '" + described.joints[i].name + "'";
+      const std::string other = " of its axis from the axis of joint '" + described.joints[i].name + "'";
       const auto differ = [&](const std::string& what, auto measure, double tolerance) {
         const double a = measure(ours[i], ours[j]);
         const double b = measure(theirs[i], theirs[j]);

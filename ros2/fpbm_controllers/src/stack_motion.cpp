@@ -53,7 +53,7 @@ constexpr int kPerLevel = Stack::kTasks / Stack::kLevels;
   return Stack(level(0), level(1), level(2), level(3));
 }
 
-/// Throws std::invalid_argument, with the task's name, where a tick does not damp the error of a task with its gains.
+/// Throws std::invalid_argument, with the task's name, if a tick does not damp the error of a task with its gains.
 void require_stable_tasks(const std::vector<MotionTask>& tasks, const fpbm::TickOfGains<>& tick) {
   constexpr fpbm::Level kLevel = fpbm::Level::kAcceleration;
   for (const MotionTask& task : tasks) {
@@ -135,7 +135,7 @@ class StackMotion final : public Motion {
     return Scheme(fpbm::Balanced<kDof>(scheme_.alpha, scheme_.weights, null_space_of(scheme_, start)));
   }
 
-  /// The references of all tasks some seconds into the coming tick; those of empty places are held.
+  /// The references of all tasks some seconds into the coming tick; the references of empty places are held.
   [[nodiscard]] Reference ahead(double seconds) const noexcept {
     Reference all = held_;
     for (std::size_t k = 0; k < places_.size(); ++k) {
@@ -152,7 +152,7 @@ class StackMotion final : public Motion {
   MotionScheme scheme_;
   fpbm::TrackerOptions<> options_;
   fpbm::Limits<fpbm::Level::kAcceleration, kDof> limits_;
-  std::vector<int> places_;  ///< Of each task in the stack.
+  std::vector<int> places_;  ///< Place of each task in the stack.
   Tasks tasks_;
   std::vector<Filter> filters_;
   std::optional<Tracker> tracker_;

@@ -15,7 +15,7 @@ using controller_interface::return_type;
 
 namespace {
 
-/// The interfaces of one type after those of another, each in the order of the joints.
+/// The interfaces in the order of their types, and for each type in the order of the joints.
 [[nodiscard]] InterfaceConfiguration interfaces(const std::vector<std::string>& joints,
                                                 const std::vector<std::string>& types) {
   InterfaceConfiguration configuration{controller_interface::interface_configuration_type::INDIVIDUAL, {}};
@@ -47,7 +47,7 @@ InterfaceConfiguration TargetController::state_interface_configuration() const {
   return interfaces(params_.joints, params_.state_interfaces);
 }
 
-/// Makes all that allocates, and checks all that may throw but for where the arm stands.
+/// Constructs all objects that allocate, and makes all checks that may throw, except of the arm's position.
 CallbackReturn TargetController::on_configure(const rclcpp_lifecycle::State&) {
   try {
     read_parameters();
@@ -98,7 +98,7 @@ CallbackReturn TargetController::on_activate(const rclcpp_lifecycle::State&) {
 }
 
 /// The last command of all joints, unless there is none or the arm does not follow it; else the measured positions. The
-/// command would jump to the measured positions by what the arm lags or hangs behind.
+/// command would jump to the measured positions by the lag and the steady-state error of the arm.
 TargetController::Joints TargetController::start() {
   const auto require = [&](bool good, std::size_t joint, const char* what) {
     if (!good) throw std::runtime_error("joint '" + params_.joints[joint] + "': " + what);
@@ -136,7 +136,7 @@ CallbackReturn TargetController::on_deactivate(const rclcpp_lifecycle::State&) {
   topics_->exchange().report.set(Report{});
   const Joints& q = motion_->state().q;
   if (const auto joint = command(q, Joints::Zero(q.size()))) {
-    RCLCPP_WARN(get_node()->get_logger(), "joint '%s': its command is locked by another thread, and stays as it was",
+    RCLCPP_WARN(get_node()->get_logger(), "joint '%s': its command is locked by another thread, and stays unchanged",
                 params_.joints[*joint].c_str());
   }
   return CallbackReturn::SUCCESS;
@@ -144,9 +144,10 @@ CallbackReturn TargetController::on_deactivate(const rclcpp_lifecycle::State&) {
 
 /// One tick a call, always of the length that the limits were made for: a late call makes the arm late, never fast.
 ///
-/// An interface that another thread has locked is no error, for which the controller manager would deactivate the
-/// controller in motion. The arm waits until all joints have taken a command; if that takes too long, it starts anew at
-/// rest from there, and stays. Where readings stay locked, the last falls behind the command, and the arm stops.
+/// An interface that another thread has locked is not an error: after an error, the controller manager would deactivate
+/// the controller in motion. The arm waits until all joints have taken a command. If the wait is too long, the arm
+/// restarts at rest at its last command, and stays. Where readings stay locked, the last falls behind the command, and
+/// the arm stops.
 return_type TargetController::update(const rclcpp::Time& time, const rclcpp::Duration& period) {
   if (!pace_.due(period.seconds())) {
     ++report_.early;

@@ -38,7 +38,7 @@ namespace {
   return vector;
 }
 
-/// Throws where the joints of the parameters are not those of the tree that have a drive.
+/// Throws if the joints of the parameters are not the joints of the tree that have a drive.
 void require_joints(const std::vector<std::string>& given, const fpbm::Tree<>& tree) {
   std::vector<std::string> driven;
   std::string list;
@@ -89,7 +89,7 @@ void TargetController::read_parameters() {
   fpbm::TrackerOptions<> options;
   options.dt = dt_;
   options.null_damping = 0.0;  // scheme.null_damping alone decides.
-  // A recovery moves all joints, also those of tasks that are at their targets, and breaks a grasp.
+  // A recovery moves all joints, also joints of tasks that are at their targets, and breaks a grasp.
   options.recovery = tasks_.size() == 1;
   const bool several = std::any_of(tasks_.begin(), tasks_.end(), [](const auto& task) { return task.level > 0; });
   options.keep_first_level = params_.keep_first_level && several;
@@ -118,7 +118,7 @@ fpbm::Tree<> TargetController::described() const {
 
 std::vector<MotionTask> TargetController::motion_tasks(const fpbm::Tree<>& tree) const {
   std::vector<MotionTask> tasks;
-  std::array<int, Report::kTasks> rows{};  // Of each level.
+  std::array<int, Report::kTasks> rows{};  // Rows of each level.
   auto frame = tree.frames.begin();
   for (const auto& task : tasks_) {
     const auto take = [&frame] {
@@ -157,7 +157,8 @@ MotionScheme TargetController::scheme(Eigen::Index dof) const {
 
 /// The controller manager calls a controller in every n-th of the manager's ticks.
 void TargetController::require_rate() const {
-  if (is_async()) throw std::invalid_argument("is_async: must be false, since a write could see two ticks");
+  if (is_async())
+    throw std::invalid_argument("is_async: must be false, since a write could mix the commands of two ticks");
   const unsigned int own = get_update_rate();
   if (own > 0 && manager_rate_ % own == 0) return;
   const auto wanted = static_cast<unsigned int>(get_node()->get_parameter("update_rate").as_int());

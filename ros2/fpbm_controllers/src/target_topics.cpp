@@ -41,7 +41,8 @@ void log_events(const Report& report, Exchange& exchange, const rclcpp::Logger& 
   for (std::size_t k = 0; k < exchange.names.size(); ++k) {
     const std::uint64_t refused = report.tasks[k].refused;
     if (refused <= before.tasks[k].refused) continue;
-    RCLCPP_WARN(logger, "%s targets%s refused: their stamps are not newer than those before. Check the sender's clock.",
+    RCLCPP_WARN(logger,
+                "%s targets%s rejected: their stamps are not newer than earlier stamps. Check the sender's clock.",
                 std::to_string(refused - before.tasks[k].refused).c_str(), of_task(exchange.names[k]).c_str());
   }
   if (report.missed > before.missed) {
@@ -84,7 +85,8 @@ TargetTopics::TargetTopics(rclcpp_lifecycle::LifecycleNode& node, const target_c
                                               });
 }
 
-/// Best effort, since a subscription that asks for reliable messages gets none of a sensor's; and the newest alone.
+/// Best effort, since a subscription with reliable messages receives no messages of a sensor; only the newest message
+/// is kept.
 template <typename Message>
 std::shared_ptr<rclcpp::Subscription<Message>> TargetTopics::listen(rclcpp_lifecycle::LifecycleNode& node,
                                                                     const std::string& topic, std::size_t task) const {

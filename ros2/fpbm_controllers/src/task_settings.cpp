@@ -10,7 +10,7 @@ namespace fpbm_controllers {
 
 namespace {
 
-constexpr int kLevels = 4;    // Of an fpbm::AnyStack,
+constexpr int kLevels = 4;    // Levels of an fpbm::AnyStack,
 constexpr int kPerLevel = 2;  // and tasks of frames on each.
 
 void require(bool good, const std::string& message) {
@@ -55,11 +55,11 @@ void require(bool good, const std::string& message) {
 std::vector<TaskSettings> task_settings(const target_controller::Params& params) {
   if (params.tasks.empty()) return {of_tip(params)};
   require(params.tip_frame.empty(), "tip_frame: is '" + params.tip_frame +
-                                        "', and there are tasks: remove tip_frame, and give each task its frame");
+                                        "', but tasks are given: remove tip_frame, and give each task its frame");
   const auto is_zero = [](double x) { return x == 0.0; };
   const auto& [xyz, rpy] = params.tool;
   require(std::all_of(xyz.begin(), xyz.end(), is_zero) && std::all_of(rpy.begin(), rpy.end(), is_zero),
-          "tool: is that of tip_frame, and there are tasks: remove tool, and give each task a link at its tool");
+          "tool: is only for tip_frame, but tasks are given: remove tool, and give each task a link at its tool");
   std::vector<TaskSettings> tasks;
   std::array<int, kLevels> counts{};
   for (const std::string& name : params.tasks) {
@@ -67,7 +67,8 @@ std::vector<TaskSettings> task_settings(const target_controller::Params& params)
     const TaskSettings& task = tasks.back();
     require(++counts[static_cast<std::size_t>(task.level)] <= kPerLevel,
             task.parameter("level") + ": level " + std::to_string(task.level + 1) + " has " +
-                std::to_string(kPerLevel) + " tasks before this one, which is the most: put the task on another level");
+                std::to_string(kPerLevel) +
+                " tasks before this one, the largest number: put the task on another level");
   }
   require(counts[0] > 0, "tasks: none has level 1: give the tasks of the highest priority level 1");
   return tasks;

@@ -17,7 +17,7 @@ namespace {
 using controller_interface::return_type;
 using controller_manager::ControllerManager;
 
-/// urdf/panda.urdf.xacro without what it shows.
+/// urdf/panda.urdf.xacro without visual elements.
 std::string description() {
   struct Joint {
     const char* xyz;

@@ -14,8 +14,9 @@
 #include <utility>
 #include <vector>
 
-// Stands in for ros2_control's header of this name and for those that it brings along: only what the controller uses,
-// with interfaces that are plain numbers. Signatures are those of ros2_control 4.46 (Jazzy) and 6.8 (Rolling).
+// Stands in for ros2_control's header of this name and for the headers that it includes: only the interface that the
+// controller uses, with interfaces that are plain numbers. Signatures are those of ros2_control 4.46 (Jazzy) and 6.8
+// (Rolling).
 namespace rclcpp_lifecycle {
 
 class State {};
@@ -47,7 +48,7 @@ class LifecycleNode {
     topics[topic] = std::weak_ptr<rclcpp::Publisher<Message>>(made);
     return made;
   }
-  /// Throws where the period is not a number, or less than a nanosecond.
+  /// Throws if the period is not a number, or less than a nanosecond.
   template <typename Rep, typename Period, typename Callback>
   std::shared_ptr<rclcpp::TimerBase> create_wall_timer(std::chrono::duration<Rep, Period> period, Callback callback) {
     if (!(period.count() >= Rep(1e-9))) throw std::invalid_argument("timer period must be positive");
@@ -64,7 +65,7 @@ class LifecycleNode {
     return parameters_->get_parameter(name);
   }
 
-  std::map<std::string, std::any> topics;  ///< Weak, as what the node knows of them.
+  std::map<std::string, std::any> topics;  ///< Weak, like the references of the node.
   std::vector<std::weak_ptr<rclcpp::TimerBase>> timers;
 
  private:

@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-// Stands in for rclcpp's headers of parameters: values, their types, and what a node declares.
+// Stands in for rclcpp's headers of parameters: values, their types, and the declarations of a node.
 namespace rcl_interfaces::msg {
 
 struct ParameterDescriptor {
@@ -80,7 +80,7 @@ class NodeParametersInterface {
   [[nodiscard]] const std::map<std::string, ParameterValue>& get_parameter_overrides() const { return overrides; }
   [[nodiscard]] bool has_parameter(const std::string& name) const { return declared.count(name) > 0; }
   [[nodiscard]] Parameter get_parameter(const std::string& name) const { return Parameter(declared.at(name)); }
-  /// A parameter has one type, that of its default.
+  /// A parameter has one type, the type of its default.
   const ParameterValue& declare_parameter(const std::string& name, const ParameterValue& value,
                                           const rcl_interfaces::msg::ParameterDescriptor& = {},
                                           bool ignore_override = false) {

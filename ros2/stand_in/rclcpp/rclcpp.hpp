@@ -14,7 +14,8 @@
 #include <utility>
 #include <vector>
 
-// Stands in for rclcpp's header of this name: only what the controller uses. Messages go nowhere but to the test.
+// Stands in for rclcpp's header of this name: only the interface that the controller uses. Messages are received only
+// by the test.
 namespace rclcpp {
 
 class Logger {};
@@ -51,7 +52,7 @@ class Subscription {
  public:
   Subscription(const QoS& qos, std::function<void(const Message&)> callback)
       : qos_(qos), callback_(std::move(callback)) {}
-  /// A message of a publisher: none arrives where the subscription asks for more than the publisher offers.
+  /// A message of a publisher: none arrives if the subscription requires more than the publisher offers.
   void hear(const Message& message, const QoS& offered = SystemDefaultsQoS()) const {
     const bool wants_more =
         qos_.reliability() == ReliabilityPolicy::Reliable && offered.reliability() == ReliabilityPolicy::BestEffort;

@@ -40,7 +40,7 @@ struct Subject {
   std::string name;
   int dof;
   int rows;        ///< Rows of the task.
-  double epsilon;  ///< Of the Scalar.
+  double epsilon;  ///< Machine epsilon of the Scalar.
   Takes takes;
   std::function<Outcome(const Law&, const Scene&)> resolve;
 };

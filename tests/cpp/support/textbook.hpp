@@ -42,7 +42,7 @@ struct Situation {
   RealVector error;  ///< x ⊖ f(q).
   RealVector xd;
   RealVector xdd;
-  RealVector units;  ///< Of each row: 1 for a length, the characteristic length of the arm for an angle.
+  RealVector units;  ///< Unit of each row: 1 for a length, the characteristic length of the arm for an angle.
 };
 
 /// Tip position, J and Jd of a planar arm at (q, qd), with a separate sum for each element. The reference is empty.

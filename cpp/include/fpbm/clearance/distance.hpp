@@ -23,7 +23,7 @@ struct Nearest {
   }
 };
 
-/// Of two capsules.
+/// Separation of two capsules.
 template <typename Scalar>
 [[nodiscard]] Nearest<Scalar> nearest(const Capsule<Scalar>& first, const Capsule<Scalar>& second) noexcept {
   const Segment<Scalar> core = first.core();
@@ -31,7 +31,7 @@ template <typename Scalar>
   return Nearest<Scalar>::of_core(cores.gap - second.radius, cores.normal, core.at(cores.s), first.radius);
 }
 
-/// Of a capsule and a half-space: at the deeper end of the capsule.
+/// Separation of a capsule and a half-space: at the deeper end of the capsule.
 template <typename Scalar>
 [[nodiscard]] Nearest<Scalar> nearest(const Capsule<Scalar>& first, const HalfSpace<Scalar>& second) noexcept {
   const Scalar at_a = second.normal.dot(first.a);
@@ -41,7 +41,7 @@ template <typename Scalar>
   return Nearest<Scalar>::of_core(distance, second.normal, b_deeper ? first.b : first.a, first.radius);
 }
 
-/// Of a capsule and a box.
+/// Separation of a capsule and a box.
 template <typename Scalar>
 [[nodiscard]] Nearest<Scalar> nearest(const Capsule<Scalar>& first, const Cuboid<Scalar>& second) noexcept {
   const Segment<Scalar> core = first.core();

@@ -21,7 +21,7 @@ template <Level kLevel, int N, typename Scalar = double, int Joints = N>
 class Guard {
  public:
   using Clearance = fpbm::Clearance<N, Scalar, Joints>;
-  /// Largest number of rows: those of pairs, and two for speeds.
+  /// Largest number of rows: the rows of pairs, and two for speeds.
   static constexpr int kRows = PairRows<kLevel, Clearance, N>::kPairs + 2;
   using JointVector = Vector<N, Scalar>;
   using JointState = State<N, Scalar>;

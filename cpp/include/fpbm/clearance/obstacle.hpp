@@ -65,7 +65,7 @@ struct Obstacle {
     return std::visit([&body](const auto& each) { return nearest(body, each); }, shape);
   }
 
-  /// Support along n. Of a half-space: its offset, the support along its own normal.
+  /// Support along n. For a half-space: its offset, the support along its own normal.
   [[nodiscard]] Scalar support_along(const Vector3& n) const noexcept {
     if (const auto* capsule = std::get_if<Capsule<Scalar>>(&shape)) return support(*capsule, n);
     if (const auto* cuboid = std::get_if<Cuboid<Scalar>>(&shape)) {

@@ -20,7 +20,7 @@ struct AxisState {
 };
 
 /// Time-optimal stop of one axis within bounds A on the acceleration and J on the jerk, in closed form. The jerk is
-/// −sJ, 0 and sJ in turn. s is the sign of v + a|a|/2J, the velocity after the jerk ±J has reduced the acceleration to
+/// −sJ, then 0, then sJ. s is the sign of v + a|a|/2J, the velocity after the jerk ±J has reduced the acceleration to
 /// zero.
 ///
 /// A state with s > 0 is on the trajectory of jerk −J through a state with zero acceleration, whose velocity is v +

@@ -60,7 +60,7 @@ struct ReducedSinCos {
  private:
   static constexpr double kPerQuadrant = 6.36619772367581343e-01;
 
-  /// Nearest integer of x with excess precision (kHasExcessDigits). For such x, adding and subtracting kRound leaves a
+  /// Nearest integer of x with excess precision (kHasExcessDigits). For these x, adding and subtracting kRound leaves a
   /// fraction.
   static double nearest_integer(double x) noexcept {
     return static_cast<double>(static_cast<std::int64_t>(x + (x < 0.0 ? -0.5 : 0.5)));

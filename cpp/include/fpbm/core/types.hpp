@@ -20,7 +20,7 @@ using JointBits = std::uint64_t;
   return JointBits(1) << i;
 }
 
-/// Matrix without heap allocation, whatever its size.
+/// Matrix of any size without heap allocation.
 /// Unaligned, so that objects with matrices may be embedded, copied and passed between translation units that are
 /// compiled with different SIMD flags. Current processors load unaligned memory at full speed.
 template <int Rows, int Cols, typename Scalar = double>
@@ -28,7 +28,7 @@ using Matrix =
     Eigen::Matrix<Scalar, Rows, Cols, (Rows == 1 && Cols != 1 ? Eigen::RowMajor : Eigen::ColMajor) | Eigen::DontAlign,
                   kCapacity<Rows>, kCapacity<Cols>>;
 
-/// Column vector without heap allocation, whatever its size.
+/// Column vector of any size without heap allocation.
 template <int N, typename Scalar = double>
 using Vector = Matrix<N, 1, Scalar>;
 

@@ -4,7 +4,7 @@
 
 namespace fpbm {
 
-/// Limits::box_in_time(), with the bounds of `tick`, the box of this tick, wherever the bound on jerk does not restrict
+/// Limits::box_in_time(), with the bounds of `tick`, the box of this tick, if the bound on jerk does not restrict
 /// `tick`. These bounds are copied bit for bit. `last`: acceleration of the last tick.
 ///
 /// Both boxes compute these bounds by iteration, with different errors. If a goal exceeded a bound of the tick by this

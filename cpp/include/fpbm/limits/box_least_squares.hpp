@@ -14,9 +14,9 @@ namespace fpbm {
 ///   min ‖J u − v‖² + μ ‖u − rest‖²   for u in the box.
 ///
 /// The start is the unbounded solution rest + Jᵀ(JJᵀ + μI)⁻¹(v − J rest), clipped to the box. Then n rounds of
-/// Gauss-Seidel follow. Each round moves every joint in turn to its optimum within its bounds. Unlike the result of an
-/// active-set method, the result is a continuous function of all inputs, so the arm does not chatter (docs/limits.md,
-/// Saturation in the null space).
+/// Gauss-Seidel follow. Each round moves every joint, one after another, to its optimum within its bounds. Unlike the
+/// result of an active-set method, the result is a continuous function of all inputs, so the arm does not chatter
+/// (docs/limits.md, Saturation in the null space).
 template <int M, int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> box_least_squares(const Matrix<M, N, Scalar>& J, const Vector<M, Scalar>& v, Scalar mu,
                                                   const Vector<N, Scalar>& rest, const Box<N, Scalar>& box) noexcept {

@@ -78,7 +78,7 @@ class HeldJoints {
     return rate;
   }
 
-  /// Holds a joint on its bound, in addition to the held joints or in place of a held joint that can leave its bound.
+  /// Holds a joint on its bound, in addition to the held joints or instead of a held joint that can leave its bound.
   /// Returns false if neither is possible.
   ///
   /// above: whether the joint is on its upper bound. rate: |du/ds| of the joint. remaining: 1 − s. round_off():
@@ -121,7 +121,7 @@ class HeldJoints {
     return c;
   }
 
-  /// Holds a joint in place of the held joint that leaves its bound fastest, if the coefficient of the held joint
+  /// Holds a joint instead of the held joint that leaves its bound fastest, if the coefficient of the held joint
   /// exceeds `least`. Otherwise, returns false.
   template <typename Basis>
   [[nodiscard]] bool replace(const Basis& Z, Eigen::Index joint, bool above, const Free& c, Scalar least) noexcept {

@@ -54,7 +54,7 @@ struct JerkLimitedJoint {
     return {std::clamp(last - step, -stop.acceleration, stop.acceleration),
             std::clamp(last + step, -stop.acceleration, stop.acceleration)};
   }
-  /// Accelerations within the bound on acceleration, whatever the last acceleration.
+  /// Accelerations within the bound on acceleration, for every last acceleration.
   [[nodiscard]] Interval<Scalar> after_any() const noexcept { return {-stop.acceleration, stop.acceleration}; }
 
   /// Accelerations in the interval `some` that lead to a viable state. If none does, the acceleration that leads

@@ -53,7 +53,7 @@ class Limiter {
 
   [[nodiscard]] const Limits<kLevel, N, Scalar>& limits() const noexcept { return limits_; }
 
-  /// Whether the limits, minus the reserve, admit a tick from one state to another. Such a tick needs no limiter.
+  /// Whether the limits, minus the reserve, admit a tick from one state to another. This tick needs no limiter.
   [[nodiscard]] bool admits(const JointState& from, const JointState& to, const JointVector& last) const noexcept {
     return lower_limits_.admits(from, to, last);
   }

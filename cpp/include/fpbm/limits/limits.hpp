@@ -115,7 +115,7 @@ class Limits {
 
   /// Whether differences of commanded positions keep the bounds V on velocity and A on acceleration in a tick of
   /// varying acceleration: the mean velocity v = (to.q − from.q)/h is within V, and |v − qd| ≤ A h/2 at both ends of
-  /// the tick. The second difference of positions over two such ticks is h (qd − v₁) + h (v₂ − qd), with the velocity
+  /// the tick. The second difference of positions over these two ticks is h (qd − v₁) + h (v₂ − qd), with the velocity
   /// qd between the ticks, and therefore at most A h². A tick of constant acceleration within the bounds satisfies this
   /// condition up to round-off.
   [[nodiscard]] bool admits_differences(const State<N, Scalar>& from, const State<N, Scalar>& to) const noexcept {

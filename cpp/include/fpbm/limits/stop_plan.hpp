@@ -223,7 +223,7 @@ class StopPlan {
     return {forth ? Scalar(0) : -distance, back ? Scalar(0) : distance};
   }
 
-  StopProfile<Scalar> profile_;    ///< Of the synchronised stop.
+  StopProfile<Scalar> profile_;    ///< For the synchronised stop.
   JointVector last_;               ///< Acceleration of the tick before the plan.
   Scalar ramp_ticks_ = Scalar(0);  ///< Length r of the ramp in ticks: 0 if no jerk is bounded.
   JointVector velocity_;           ///< Velocity after the ramp.

@@ -24,7 +24,7 @@ struct PlainPair {
   friend PlainPair operator/(const PlainPair& x, const PlainPair& y) noexcept { return {x.a / y.a, x.b / y.b}; }
 };
 
-/// Storage of a Pair: one SIMD vector if the compiler has such a type, else a PlainPair.
+/// Storage of a Pair: one SIMD vector if the compiler has vector types, else a PlainPair.
 template <typename Scalar, typename = void>
 struct PairStorage {
   using type = PlainPair<Scalar>;

@@ -57,8 +57,8 @@ class Robot {
   [[nodiscard]] int joints() const noexcept { return tree_.joints(); }
   /// Bounds on the drives within which all joints keep their bounds.
   [[nodiscard]] const JointLimits<N, Scalar>& limits() const noexcept { return drives_.limits(); }
-  /// Characteristic length [m]. Of a chain: SerialArm::length(). Of a tree: the length of the longest chain to a frame
-  /// or a joint.
+  /// Characteristic length [m]. For a chain: SerialArm::length(). For a tree: the length of the longest chain to a
+  /// frame or a joint.
   [[nodiscard]] Scalar length() const noexcept { return length_; }
   [[nodiscard]] const Drives<N, Joints, Scalar>& drives() const noexcept { return drives_; }
   /// Whether joint i, counted from 0, is revolute. Otherwise, it is prismatic.

@@ -187,7 +187,7 @@ class LimitedState {
                                         const JointVector& field, bool one_acceleration,
                                         Result& result) const noexcept {
     JointVector desired = next.qd;
-    Scalar fraction(1);  // Of the velocities of the scheme.
+    Scalar fraction(1);  // Fraction of the velocities of the scheme.
     const auto slowed = [&](const JointVector& u) {
       return entrywise(u, [&](Eigen::Index i) { return fraction * u.coeff(i); });
     };

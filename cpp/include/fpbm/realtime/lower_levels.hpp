@@ -21,9 +21,9 @@ namespace fpbm {
 /// these tasks could oscillate or drift in the null space of the higher levels while limits slow them.
 ///
 /// The largest error of each task in a window of stall_time is compared with the largest errors in earlier windows. A
-/// task makes progress if its error is below those of all earlier windows by 1/16. A task of a lower level stops if it
-/// makes no progress, its error exceeds 0.0001, no target has moved by 0.002 (TaskDistance), and no task makes progress
-/// of more than 0.002. The reference of a stopped task is its current point at zero velocity.
+/// task makes progress if its error is below the errors of all earlier windows by 1/16. A task of a lower level stops
+/// if it makes no progress, its error exceeds 0.0001, no target has moved by 0.002 (TaskDistance), and no task makes
+/// progress of more than 0.002. The reference of a stopped task is its current point at zero velocity.
 ///
 /// All tasks follow their references again if a target of any level or a shape near the arm moves, and after a tick
 /// that does not follow the references.

@@ -31,7 +31,7 @@ namespace fpbm {
 /// At acceleration level, a tick of several tasks has one acceleration, and no RK4 step. The same applies to a tick at
 /// whose start the limits do not admit the motion or damping is active.
 ///
-/// With a Guard<kLevel, N, Scalar> in place of Unguarded, the arm avoids self-collision and obstacles.
+/// With a Guard<kLevel, N, Scalar> instead of Unguarded, the arm avoids self-collision and obstacles.
 template <typename Arm, typename Space, typename Scheme, typename Guard_ = Unguarded>
 class Tracker {
  public:

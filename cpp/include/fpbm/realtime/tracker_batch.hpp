@@ -21,7 +21,7 @@ namespace fpbm {
 ///
 /// The RK4 step of a tick is computed in lanes. Each tracker ends its tick by itself. Therefore limits are kept
 /// exactly, and every tick equals the tick of its tracker alone from the same state, up to round-off. If limits are
-/// active for seconds, above all bounds on jerk, a motion amplifies round-off errors as it amplifies a change of its
+/// active for seconds, especially bounds on jerk, a motion amplifies round-off errors as it amplifies a change of its
 /// start (docs/sweeps.md). If the step of a lane is not finite, near a singular posture or because the scheme fails,
 /// its tracker computes the whole tick. No lane influences another lane.
 template <typename Tracker, typename Arm, typename Space, typename Scheme>
@@ -45,8 +45,8 @@ class TrackerBatch {
   /// Most severe status of the ticks of each tracker.
   [[nodiscard]] const std::array<Status, kLanes>& status() const noexcept { return status_; }
 
-  /// One tick of each tracker. way: displacements from the start of each tip. Sets all members of `sample` except index
-  /// and time.
+  /// One tick of each tracker. `way`: displacements from the start of each tip. Sets all members of `sample` except
+  /// index and time.
   void tick(const TickReferences<Space, Scalar>& way, Sample<Space, N, In>& sample) noexcept {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const State<N, Scalar> state = trackers_[lane].state();

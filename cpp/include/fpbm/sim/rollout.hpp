@@ -49,7 +49,7 @@ template <typename Recorder, typename Sample>
 /// or allocates, and the result reports failures.
 ///
 /// With lanes, many motions run in parallel. The last q of a motion is NaN if its scheme fails or is damped, its tip
-/// leaves its path, or its steps are too long. Run such a motion without lanes for its status and time.
+/// leaves its path, or its steps are too long. Run this motion without lanes for its status and time.
 template <typename Arm, typename Path, typename Scheme, typename Recorder>
 RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Path& path, const Scheme& scheme,
                                                        const State<Arm::kDof, typename Arm::Scalar>& start,

@@ -11,8 +11,8 @@
 
 namespace fpbm {
 
-/// Rows J u = r of a task level, scaled so that a singular value of J Z is the part of a task direction that the higher
-/// levels leave free. Z is an orthonormal basis of the null space of the higher levels:
+/// Rows J u = r of a task level, scaled so that a singular value of J Z is the part of a task direction in the null
+/// space of the higher levels. Z is an orthonormal basis of the null space of the higher levels:
 ///
 ///   C⁻¹J u = C⁻¹r,   C Cᵀ = J Jᵀ + (ρ ‖J‖_F)² I,   C lower triangular.
 ///

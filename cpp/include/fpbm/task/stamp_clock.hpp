@@ -107,7 +107,7 @@ class StampClock {
     return elapsed;
   }
 
-  /// Counts a stamp that does not follow. Returns true, and starts the estimate again, if the run of such stamps, or
+  /// Counts a stamp that does not follow. Returns true, and starts the estimate again, if the run of these stamps, or
   /// the silence before the stamp, shows that the clock was reset.
   [[nodiscard]] bool set_anew(double stamp) noexcept {
     if (rejected_ > 0 && stamp > last_rejected_ && follows(stamp - first_rejected_, rejected_for_)) {

@@ -24,7 +24,7 @@ namespace fpbm {
 /// time, the two others in proportion. A target without a message for a timeout stops in minimum time within the
 /// bounds.
 ///
-/// After construction, no function allocates, throws or has an unbounded loop, whatever is pushed, and no bound is
+/// After construction, no function allocates, throws or has an unbounded loop, for all pushed messages, and no bound is
 /// exceeded.
 template <typename Space, typename Scalar = double>
 class TargetFilter {

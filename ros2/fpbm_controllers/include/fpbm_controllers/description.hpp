@@ -18,7 +18,7 @@ struct NamedLink {
 /// and a frame for each of the links. First come the joints from base to the first link, then the further ones to the
 /// second link, and so on.
 ///
-/// Throws std::invalid_argument, which names the parameter, where the text or a link is missing, link base moves with a
+/// Throws std::invalid_argument, which names the parameter, if the text or a link is missing, link base moves with a
 /// joint that is not between it and a link, or a joint between them is of a type that no tree has.
 [[nodiscard]] fpbm::Tree<> tree_of(const std::string& robot_description, const std::string& base,
                                    const std::vector<NamedLink>& links);
@@ -29,7 +29,7 @@ struct NamedLink {
 /// The same as a chain whose tip is the link. Joints that follow another keep its number in the tree.
 [[nodiscard]] fpbm::Chain<> chain_to(const fpbm::Tree<>& tree, int link);
 
-/// Throws std::invalid_argument, which names the joint and the difference, where a preset is not the described arm:
+/// Throws std::invalid_argument, which names the joint and the difference, if a preset is not the described arm:
 /// axes differ by more than 0.02 m or 0.05 rad from each other, or a described range or velocity exceeds the preset's
 /// by more than 1 %. Bases, tips and narrower bounds may differ. tip: the link at the arm's end, for messages.
 void require_match(const fpbm::Chain<>& described, const std::string& tip, const std::string& name,

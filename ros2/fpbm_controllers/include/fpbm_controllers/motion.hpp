@@ -19,7 +19,7 @@ namespace fpbm_controllers {
 
 /// The pose of a frame, in the base frame or relative to another frame.
 struct MotionTask {
-  std::string gains_of;  ///< What messages put before the names of the gains.
+  std::string gains_of;  ///< Prefix of the names of the gains in messages.
   int level;             ///< From 0.
   fpbm::TaskGains<> gains;
   fpbm::LinkFrame<> frame;
@@ -53,7 +53,7 @@ struct MotionSettings {
   MotionScheme scheme;
   fpbm::TrackerOptions<> options;
   fpbm::Limits<fpbm::Level::kAcceleration, Eigen::Dynamic> limits;
-  fpbm::TargetBounds<> bounds;  ///< Of each task's reference.
+  fpbm::TargetBounds<> bounds;  ///< Bounds on each task's reference.
   fpbm::TargetFilterOptions<> filter;
 };
 
@@ -69,9 +69,9 @@ class Motion {
   Motion& operator=(const Motion&) = delete;
   virtual ~Motion() = default;
 
-  /// Starts at rest from a posture. Throws std::invalid_argument where the posture is beyond a limit.
+  /// Starts at rest from a posture. Throws std::invalid_argument if the posture is beyond a limit.
   virtual void begin(const Joints& q) = 0;
-  /// A new target of a task. False where its stamp rejects it.
+  /// A new target of a task. False if its stamp rejects it.
   virtual bool push(std::size_t task, const Target& target) noexcept = 0;
   /// One tick: sets the status, and the scale and the errors of each task.
   virtual void tick(Report& report) noexcept = 0;
@@ -84,16 +84,16 @@ class Motion {
   virtual void locate(Report& report) const noexcept = 0;
 };
 
-/// Of one tip, by a tracker of a pose: less than half of the time of a stack, and of robots of fewer than six joints
-/// too. settings: with one task, without a reference frame. Throws std::invalid_argument where a gain is too high for
-/// the tick.
+/// Motion of one tip by a tracker of a pose, in less than half of the time of a stack; also for robots of fewer than
+/// six joints. settings: with one task, without a reference frame. Throws std::invalid_argument if a gain is too high
+/// for the tick.
 [[nodiscard]] std::unique_ptr<Motion> make_tip_motion(const MotionSettings& settings);
 
-/// Of any tasks, by a tracker of a stack. Throws std::invalid_argument where a gain is too high for the tick, or a task
-/// does not suit the robot.
+/// Motion of any tasks by a tracker of a stack. Throws std::invalid_argument if a gain is too high for the tick, or a
+/// task does not suit the robot.
 [[nodiscard]] std::unique_ptr<Motion> make_stack_motion(const MotionSettings& settings);
 
-/// Hands a target to the filter of a task. False where its stamp rejects the target.
+/// Hands a target to the filter of a task. False if its stamp rejects the target.
 template <typename Filter>
 bool push_to(Filter& filter, const Target& target) noexcept {
   const auto push = [&](auto... stamp) noexcept {

@@ -21,7 +21,7 @@ class Pace {
 
  private:
   double dt_;
-  double ahead_ = 0.0;  ///< Of the ticks [s].
+  double ahead_ = 0.0;  ///< Time of the ticks ahead of the clock [s].
 };
 
 }  // namespace fpbm_controllers

@@ -6,8 +6,8 @@
 
 namespace fpbm_controllers {
 
-/// Declares the parameters. Integers are accepted for numbers. Throws where a value is invalid or missing, and where a
-/// parameter was given that the controller does not have.
+/// Declares the parameters. Integers are accepted for numbers. Throws if a value is invalid or missing, or a given
+/// parameter is not a parameter of the controller.
 [[nodiscard]] std::shared_ptr<target_controller::ParamListener> listen_to_parameters(
     const std::shared_ptr<rclcpp_lifecycle::LifecycleNode>& node);
 

@@ -15,16 +15,16 @@ namespace fpbm_controllers {
 /// Why an arm was stopped until it is activated again.
 enum class Fault : std::uint8_t { kNone, kFollowing, kUnreadable, kLocked };
 
-/// How a tick went for a task.
+/// Result of a tick for a task.
 struct TaskReport {
-  double scale = 1.0;              ///< Share of the task that the limits left.
-  double position_error = 0.0;     ///< Of its frame, on the filter's reference [m],
+  double scale = 1.0;              ///< Task scale.
+  double position_error = 0.0;     ///< Error of its frame from the filter's reference [m],
   double orientation_error = 0.0;  ///< and [rad].
   std::uint64_t refused = 0;       ///< Targets whose stamps were not newer than those before.
   fpbm::Transform<> at;            ///< Its frame, in the base frame or the reference frame.
 };
 
-/// How a tick went: numbers only, so that the loop allocates nothing for it.
+/// Result of a tick: numbers only, so that the loop allocates nothing for it.
 struct Report {
   static constexpr std::size_t kTasks = 8;  ///< At most.
 
@@ -39,7 +39,7 @@ struct Report {
   std::array<TaskReport, kTasks> tasks;
 };
 
-/// What a fault was, and what to do.
+/// Description of a fault, with advice.
 [[nodiscard]] inline std::string message_of(const Report& report, const std::vector<std::string>& joints) {
   const std::string joint = "joint '" + joints.at(report.fault_joint) + "': ";
   const std::string advice = ": the arm stops. Deactivate the controller, then activate it.";
@@ -78,7 +78,7 @@ struct Report {
     for (std::size_t k = tasks.size(); well && k-- > 0;) {
       if (report.tasks[k].refused <= before.tasks[k].refused) continue;
       message.level = Message::WARN;
-      message.message = "targets" + of_task(tasks[k]) + " are refused: their stamps are not newer than those before";
+      message.message = "targets" + of_task(tasks[k]) + " are rejected: their stamps are not newer than earlier stamps";
     }
   }
   const auto add = [&message](const std::string& key, const std::string& value) {
@@ -98,7 +98,7 @@ struct Report {
   });
   add("following error [rad]", std::to_string(report.following_error));
   for_each_task([&](const std::string& task, const TaskReport& values) {
-    add(task + "targets refused", std::to_string(values.refused));
+    add(task + "targets rejected", std::to_string(values.refused));
   });
   add("ticks with a locked interface", std::to_string(report.missed));
   add("calls that came too soon", std::to_string(report.early));

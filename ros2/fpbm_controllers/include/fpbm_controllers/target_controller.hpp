@@ -40,9 +40,9 @@ class TargetController : public controller_interface::ControllerInterface {
   using Joints = fpbm::Vector<kDof>;
   using JointLimits = fpbm::JointLimits<kDof>;
 
-  /// Throws std::invalid_argument where a parameter does not fit.
+  /// Throws std::invalid_argument if a parameter does not fit.
   void read_parameters();
-  /// Throws std::invalid_argument where the controller is not called once in a tick of its update rate.
+  /// Throws std::invalid_argument if the controller is not called once in a tick of its update rate.
   void require_rate() const;
   /// The described joints, with a frame for each task's frame and then one for each reference frame, and the tool.
   [[nodiscard]] fpbm::Tree<> described() const;
@@ -51,13 +51,13 @@ class TargetController : public controller_interface::ControllerInterface {
   /// The tasks with the frames of that tree.
   [[nodiscard]] std::vector<MotionTask> motion_tasks(const fpbm::Tree<>& tree) const;
   [[nodiscard]] MotionScheme scheme(Eigen::Index dof) const;
-  /// The narrowest of those of the robot, ros2_control, the preset and the parameters, which are logged.
+  /// The narrowest limits of the robot, ros2_control, the preset and the parameters; the limits are logged.
   [[nodiscard]] JointLimits limits(const fpbm::Tree<>& tree) const;
-  /// Those of the preset, for each arm of a tree. Throws std::invalid_argument where an arm is not the preset.
+  /// The limits of the preset, for each arm of a tree. Throws std::invalid_argument if an arm is not the preset.
   [[nodiscard]] JointLimits preset_limits(const fpbm::Tree<>& tree) const;
   void close();
 
-  /// Throws std::runtime_error, which names the joint, where an interface cannot be read or the arm moves.
+  /// Throws std::runtime_error, which names the joint, if an interface cannot be read or the arm moves.
   [[nodiscard]] Joints start();
 
   void take_targets() noexcept;
@@ -83,7 +83,7 @@ class TargetController : public controller_interface::ControllerInterface {
   std::optional<fpbm::Limits<fpbm::Level::kAcceleration, kDof>> limits_;
   std::optional<TargetTopics> topics_;
 
-  // Of an active controller, and of the loop alone.
+  // Only for an active controller, and only for its loop.
   std::unique_ptr<Motion> motion_;
   Pace pace_;
   std::array<std::uint64_t, Report::kTasks> seen_{};  ///< The count of each task's newest target.

@@ -21,23 +21,23 @@ namespace fpbm_controllers {
 struct TargetExchange {
   realtime_tools::RealtimeThreadSafeBox<Target> target;
 
-  // Of the callbacks alone.
-  std::string frame_id;  ///< Of targets: the base frame or the reference frame.
+  // Only for the callbacks.
+  std::string frame_id;  ///< Frame of targets: the base frame or the reference frame.
   std::uint64_t received = 0;
 };
 
-/// What the loop and the node's callbacks exchange. The loop never waits for it. Each callback shares its ownership,
-/// since the topics may close while a callback runs.
+/// Data that the loop and the node's callbacks exchange. The loop never waits for it. Each callback shares its
+/// ownership, since the topics may close while a callback runs.
 struct Exchange {
   explicit Exchange(std::size_t count) : tasks(count) {}
 
   std::vector<TargetExchange> tasks;
   realtime_tools::RealtimeThreadSafeBox<Report> report;
 
-  // Of the callbacks alone.
+  // Only for the callbacks.
   std::string arm;
   std::vector<std::string> joints;
-  std::vector<std::string> names;  ///< Of the tasks.
+  std::vector<std::string> names;  ///< Names of the tasks.
   Report logged;                   ///< The last report whose events were logged,
   Report diagnosed;                ///< and the last that was published.
 };

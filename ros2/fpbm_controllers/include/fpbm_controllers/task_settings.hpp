@@ -22,7 +22,7 @@ struct TaskSettings {
 };
 
 /// Throws std::invalid_argument, which names the parameter, unless there is either tip_frame or tasks, and each task
-/// has a frame, a name for topics and a level with a place left.
+/// has a frame, a name for topics and a level with a free place.
 [[nodiscard]] std::vector<TaskSettings> task_settings(const target_controller::Params& params);
 
 }  // namespace fpbm_controllers

@@ -3,7 +3,7 @@
 #include <rclcpp/time.hpp>
 #include <string>
 
-// Stands in for the header that ROS generates from geometry_msgs/PoseStamped, and for those of its parts.
+// Stands in for the header that ROS generates from geometry_msgs/PoseStamped, and for the headers of its members.
 namespace std_msgs::msg {
 
 struct Header {

@@ -2,7 +2,7 @@
 
 #include <geometry_msgs/msg/pose_stamped.hpp>
 
-// Stands in for the header that ROS generates from geometry_msgs/TwistStamped, and for those of its parts.
+// Stands in for the header that ROS generates from geometry_msgs/TwistStamped, and for the headers of its members.
 namespace geometry_msgs::msg {
 
 struct Vector3 {
