@@ -2,7 +2,7 @@
 
   prose.py check                      reports the terms of tools/terms.toml; fails if there is any
   prose.py draw --seed N [--count 20] draws sentences of each kind at random
-  prose.py list [KIND]                lists all sentences: doc, comment or message
+  prose.py list [KIND]                lists all sentences: doc, comment, error or message
 
 Needs Python 3.11 or later.
 """
@@ -18,10 +18,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import tomllib
-from sentences import COMMENT, DOC, MESSAGE, Sentence, all_sentences
+from sentences import COMMENT, DOC, ERROR, MESSAGE, Sentence, all_sentences
 
 TERMS = Path(__file__).with_name("terms.toml")
-KINDS = (DOC, COMMENT, MESSAGE)
+KINDS = (DOC, COMMENT, ERROR, MESSAGE)
 # Names in code fonts, names with an underscore or a scope, calls, members and factors: not words.
 CODE = re.compile(r"``[^`]+``|`[^`]+`|[\w.]*(?:\w_|_\w|::\w)[\w.:]*|\b\w+\((?!s\))|\b\w+\.\w+|\w·\w+|\$[^$]+\$")
 WORD = re.compile(r"[A-Za-z]{2,}")

@@ -17,7 +17,8 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 ROOT = Path(__file__).parent.parent
-DOC, COMMENT, MESSAGE = "doc", "comment", "message"  # Kinds of sentences.
+# Kinds of sentences. A message is a text that a program shows; an error is a message of an exception.
+DOC, COMMENT, ERROR, MESSAGE = "doc", "comment", "error", "message"
 # Files that a program writes, and the sentences of tools/terms.toml itself.
 GENERATED = re.compile(r"^(bench/results/|docs/results/|tools/terms\.toml|web/package-lock|.*/(_core\.pyi|LICENSE)$)")
 HASH_FILES = re.compile(r"(^|/)(Makefile|CMakeLists\.txt|run|\.clang-tidy|\.gitignore)$|\.(cmake|in|sh|toml|ya?ml|ld)$")
@@ -28,6 +29,10 @@ TOKEN = re.compile(
       | (?<!\w)'(?P<single>(?:\\.|[^'\\\n])*)'  # A character, or a string of JavaScript; not 1'000.
       | `(?P<template>(?:\\.|[^`\\])*)`""",
     re.DOTALL | re.VERBOSE,
+)
+# Begins a call that throws, in C++ and in Python.
+THROWS = re.compile(
+    r"\b(?:fail|reject\w*|require\w*|(?:invalid_argument|out_of_range|runtime_error)|raise \w+|wrong)\("
 )
 NEXT_MESSAGE = re.compile(r"[;{}&]|py::|\bdef\b|==")  # Ends a message that is built of several literals.
 END = re.compile(r"(?<!e\.g\.)(?<!i\.e\.)(?<!et al\.)(?<!vs\.)(?<=[.!?])[\"”)*_]*\s+(?=[A-Z0-9`\"“(\[*_{|])")
@@ -61,7 +66,7 @@ def sentences(name: str, text: str) -> Iterator[Sentence]:
     """The sentences of a file with this name, which decides how to read the text."""
     read = reader(name)
     for kind, lines in read(text) if read else ():
-        if not (kind == MESSAGE and name.startswith("tests/")):  # There, they repeat a message or name a case.
+        if not (kind in (ERROR, MESSAGE) and name.startswith("tests/")):  # There, they repeat a message or name a case.
             yield from _split(name, kind, lines)
 
 
@@ -136,7 +141,7 @@ def _comments(found: list[tuple[int, int, str, bool]]) -> Iterator[tuple[str, Li
 def _braces(text: str) -> Iterator[tuple[str, Lines]]:
     """Languages with the comments of C: C++, JavaScript and CSS."""
     found: list[tuple[int, int, str, bool]] = []
-    messages: list[tuple[str, Lines]] = []
+    messages: list[tuple[str, Lines]] = []  # Kind and literals.
     end = 0  # End of the last literal.
     for token in TOKEN.finditer(text):
         number = text.count("\n", 0, token.start()) + 1
@@ -152,25 +157,27 @@ def _braces(text: str) -> Iterator[tuple[str, Lines]]:
         if messages and not NEXT_MESSAGE.search(between) and len(between) < 120:
             messages[-1][1].append((number, ("…" if between.strip() else "") + literal))
         else:
-            messages.append((MESSAGE, [(number, literal)]))
+            call = re.split(r"[;{}]", text[max(start - 200, end) : token.start()])[-1]
+            messages.append((ERROR if THROWS.search(call) else MESSAGE, [(number, literal)]))
         end = token.end()
     yield from _comments(found)
-    yield from (paragraph for message in messages for paragraph in _message(message[1]))
+    yield from (paragraph for kind, parts in messages for paragraph in _message(parts, kind))
 
 
-def _message(parts: Lines) -> Iterator[tuple[str, Lines]]:
+def _message(parts: Lines, kind: str = MESSAGE) -> Iterator[tuple[str, Lines]]:
     """The paragraphs of a text that a program shows; none if its words are not a sentence."""
     joined = "".join(part for _, part in parts)
     if PROSE.search(joined):
         lines = [(parts[0][0] + i, line) for i, line in enumerate(joined.splitlines())]
-        yield from ((MESSAGE, paragraph) for paragraph in _paragraphs(lines))
+        yield from ((kind, paragraph) for paragraph in _paragraphs(lines))
 
 
 def _python(text: str) -> Iterator[tuple[str, Lines]]:
     """Comments, docstrings and string literals of Python."""
     tree = ast.parse(text)
-    shown: list[tuple[int, str]] = []
+    shown: list[tuple[int, str, str]] = []  # Line, text and kind.
     inside: set[ast.AST] = set()  # Docstrings, and parts of f-strings.
+    thrown = {id(part) for node in ast.walk(tree) if isinstance(node, ast.Raise) for part in ast.walk(node)}
     for node in ast.walk(tree):
         if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)) and node.body:
             first = node.body[0]
@@ -182,11 +189,11 @@ def _python(text: str) -> Iterator[tuple[str, Lines]]:
         elif isinstance(node, ast.JoinedStr):
             inside.update(node.values)
             words = (part.value if isinstance(part, ast.Constant) else "…" for part in node.values)
-            shown.append((node.lineno, "".join(map(str, words))))
+            shown.append((node.lineno, "".join(map(str, words)), ERROR if id(node) in thrown else MESSAGE))
         elif isinstance(node, ast.Constant) and isinstance(node.value, str) and node not in inside:
-            shown.append((node.lineno, node.value))
-    for place in sorted(shown):
-        yield from _message([place])
+            shown.append((node.lineno, node.value, ERROR if id(node) in thrown else MESSAGE))
+    for number, literal, kind in sorted(shown):
+        yield from _message([(number, literal)], kind)
     comments = (
         token for token in tokenize.generate_tokens(io.StringIO(text).readline) if token.type == tokenize.COMMENT
     )
