@@ -85,10 +85,10 @@ void check() {
         (7, "comment", "A block of two lines."),
         (15, "comment", "Not the start of a string."),
         (10, "message", "a/b // no comment"),
-        (12, "message", "has … entries: must have one"),
+        (12, "error", "has … entries: must have one"),
         (14, "message", 'A raw "string" of words'),
     ]
-    assert not [sentence for sentence in found("tests/cpp/a.cpp", source) if sentence[1] == "message"]
+    assert not [sentence for sentence in found("tests/cpp/a.cpp", source) if sentence[1] in ("error", "message")]
 
 
 def test_javascript() -> None:
@@ -122,7 +122,7 @@ KEY = "not_prose"
         (1, "comment", "The module."),
         (1, "comment", "It has two sentences."),
         (7, "comment", "A function."),
-        (11, "message", "dt = …: must be positive, and a finite number"),
+        (11, "error", "dt = …: must be positive, and a finite number"),
         (4, "comment", "A comment of two lines."),
         (6, "comment", "Trailing."),
     ]
