@@ -34,7 +34,7 @@ class Guard {
         pair_rows_(clearance),
         placed_(clearance.placement()),
         plan_(clearance.robot().dof()),
-        displacement_(plan_.displacement()) {}
+        displacement_(StopDisplacement<N, Scalar>::none(clearance.robot().dof())) {}
 
   /// Starts from a state after a tick with the acceleration `last`. Throws std::invalid_argument with the names of the
   /// pair if a pair is closer than the margin, or if the arm cannot stop with all margins kept.

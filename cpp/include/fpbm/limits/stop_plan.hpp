@@ -23,6 +23,12 @@ struct StopDisplacement {
   /// Velocities at the start [rad/s]. s·line + t·ramp_correction is a combination of `start_velocity` and
   /// −ramp_correction with non-negative coefficients.
   Vector<N, Scalar> start_velocity;
+
+  /// Displacement of n joints at rest.
+  [[nodiscard]] static StopDisplacement none(Eigen::Index n) {
+    const Vector<N, Scalar> zero = Vector<N, Scalar>::Zero(n);
+    return {zero, zero, zero, zero, zero};
+  }
 };
 
 /// Stopping trajectory from a viable state, known in closed form until rest (docs/clearance.md, Algorithm, Stopping
@@ -61,11 +67,6 @@ class StopPlan {
     }
   }
 
-  /// Displacement of an arm at rest: zero.
-  [[nodiscard]] StopDisplacement<N, Scalar> displacement() const noexcept {
-    return {velocity_, velocity_, velocity_, velocity_, velocity_};
-  }
-
   /// Displacement bounds from the state `before` the last tick until rest. start: state after the last tick, at the
   /// start of the plan.
   [[nodiscard]] StopDisplacement<N, Scalar> displacement(const JointLimits& limits, const State<N, Scalar>& before,
@@ -73,8 +74,7 @@ class StopPlan {
     using std::abs;
     const Eigen::Index n = last_.size();
     const Scalar h = limits.tick();
-    const JointVector zero = JointVector::Zero(n);
-    StopDisplacement<N, Scalar> result{zero, zero, zero, zero, zero};
+    StopDisplacement<N, Scalar> result = StopDisplacement<N, Scalar>::none(n);
     const Scalar ticks = Scalar(1) + profile_.coasting_ticks(kLevel);
     // Deficit of the displacement in the last tick, compared with a tick at the velocity after the ramp, divided by h²
     // last_. At velocity level, the velocity at the end of the tick counts.
