@@ -11,7 +11,8 @@ namespace fpbm {
 /// Cody-Waite reduction by multiples of π/2 in three parts (as in ReducedSinCos), then minimax polynomials on |r| ≤
 /// π/4, with relative errors of 3.8e-9 (sine) and 1.2e-10 (cosine).
 struct FloatSinCos {
-  static constexpr float kReach = 8192.0F;  ///< Up to here, k times the first two parts of π/2 is exact.
+  /// Up to here, k times each of the first two parts of π/2 is exact: k < 2¹³, and the parts have 8 and 11 bits.
+  static constexpr float kReach = 8192.0F;
 
   static void evaluate(float x, float& sine, float& cosine) noexcept {
 #if defined(__clang__) && __clang_major__ >= 12

@@ -171,11 +171,15 @@ template <typename Scalar>
 /// from the identity by more than 1e-4. A matrix that is orthonormal up to round-off is returned unchanged.
 ///
 /// Two Newton steps X ← (X + X⁻ᵀ)/2: each step squares and halves the deviation of the singular values from 1 (N. J.
-/// Higham, Computing the polar decomposition, 1986).
+/// Higham, Computing the polar decomposition, 1986). An initial deviation of 1.5e-4, the largest for entries of 1e-4,
+/// becomes 6e-17.
 template <typename Scalar>
 [[nodiscard]] Matrix<3, 3, Scalar> nearest_rotation(const Matrix<3, 3, Scalar>& R) noexcept {
+  // Largest round-off error of RᵀR [epsilon]: 8 for a product of two rotations, 13 for a product of seven. With 1.6 in
+  // place of 16, rounded rotations change, and TargetTurn.* fails.
+  constexpr int kRoundOff = 16;
   const Matrix<3, 3, Scalar> excess = R.transpose().lazyProduct(R) - Matrix<3, 3, Scalar>::Identity();
-  if (excess.cwiseAbs().maxCoeff() <= Scalar(16) * std::numeric_limits<Scalar>::epsilon()) return R;
+  if (excess.cwiseAbs().maxCoeff() <= Scalar(kRoundOff) * std::numeric_limits<Scalar>::epsilon()) return R;
   Matrix<3, 3, Scalar> X = R;
   for (int step = 0; step < 2; ++step) {
     const Vector<3, Scalar> x = X.col(0);

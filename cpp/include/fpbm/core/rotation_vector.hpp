@@ -13,7 +13,8 @@
 
 namespace fpbm {
 
-/// Largest sin²θ up to which angle_over_sine() is exact to round-off.
+/// Largest sin²θ up to which angle_over_sine() is exact to round-off: the first omitted term, 0.0098 sin¹⁸θ, is at most
+/// 6e-19.
 inline constexpr double kLargestSquare = 1.0 / 64.0;
 
 /// θ/sin θ for z = sin²θ, by the arcsine series.

@@ -18,7 +18,8 @@ namespace fpbm {
 /// Cody-Waite reduction by multiples of π/2 in two parts, then minimax polynomials on |r| ≤ π/4 (Remez; relative error
 /// below 2⁻⁵⁷): W. J. Cody, W. Waite, Software Manual for the Elementary Functions, 1980.
 struct ReducedSinCos {
-  static constexpr double kReach = 5e5;  ///< Up to here, k times the first part of π/2 is exact.
+  /// Up to here, k times the first part of π/2 is exact: k < 2¹⁹, and the part has 31 bits.
+  static constexpr double kReach = 5e5;
 
   static void evaluate(double x, double& sine, double& cosine) noexcept {
 #if defined(__clang__) && __clang_major__ >= 12

@@ -7,7 +7,8 @@
 
 namespace fpbm {
 
-/// Largest number of joints of an arm whose number of joints is known at run time (N = Eigen::Dynamic).
+/// Largest number of joints of an arm whose number of joints is known at run time (N = Eigen::Dynamic): the number of
+/// bits of JointBits.
 inline constexpr int kMaxDof = 64;
 
 /// Number of rows or columns for which memory is reserved: N, or kMaxDof if N is Eigen::Dynamic.

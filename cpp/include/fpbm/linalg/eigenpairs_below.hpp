@@ -74,8 +74,8 @@ class EigenpairsBelow {
   }
 
  private:
-  /// Larger than 100 √(min/ε)/ε of the Scalar. If the largest entry is above this value, the squares of round-off
-  /// errors keep all digits.
+  /// Larger than 100 √(min/ε)/ε of the Scalar, which is 4e-129 and 3e-7. If the largest entry is above this value, the
+  /// squares of round-off errors keep all digits.
   static constexpr Scalar kLeast = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-128) : Scalar(1e-6);
 
   /// T ← HᵀTH makes T tridiagonal, where H is a product of reflections I − share v vᵀ. values: the diagonal; beside(i):

@@ -4,8 +4,8 @@
 
 namespace fpbm {
 
-/// Least ratio of |ṽ|² to its largest value (is_regular) at which ṽ is known to six digits or more, and in float to
-/// half as many.
+/// Least ratio of |ṽ|² to its largest value (is_regular). The relative error of ṽ is about ε/√ratio: 2e-10 at this
+/// ratio, and 5e-6 in float. Rows with a smaller ratio are factorised by RowFactor. 0.4 ε to 4e5 ε pass `SelfMotions*`.
 template <typename Scalar>
 inline constexpr auto kCertain = 4096 * std::numeric_limits<Number<Scalar>>::epsilon();
 

@@ -37,7 +37,8 @@ struct Tridiagonal {
     return count;
   }
 
-  /// Applies QL steps until beside(first) is negligible.
+  /// Applies QL steps until beside(first) is negligible: below the round-off error ε ‖T‖ of the result. Factors of 1 to
+  /// 10 pass `*EigenpairsBelowOf*`; 0.1 and 100 fail.
   void isolate(Eigen::Index first) noexcept {
     using std::abs;
     using std::sqrt;
@@ -67,7 +68,7 @@ struct Tridiagonal {
   }
 
  private:
-  static constexpr int kSteps = 30;  // As in EISPACK's tql2.
+  static constexpr int kSteps = 30;  // As in EISPACK's tql2. 6 pass `*EigenpairsBelowOf*`, 3 fail.
 
   /// One QL step on the entries from first to last.
   void step_from(Eigen::Index last, Eigen::Index first, Scalar shift) noexcept {

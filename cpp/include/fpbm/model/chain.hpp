@@ -53,7 +53,8 @@ validation::Argument name_of(const Source& source, Eigen::Index i) {
   return name.empty() ? validation::element("joints", i) : validation::Argument("joint '") + name + "'";
 }
 
-/// Whether a matrix is a rotation, up to errors in the second half of the digits.
+/// Whether a matrix is a rotation, up to errors in the second half of the digits: an input with 9 decimals, or 4 for
+/// float, is accepted.
 template <typename Scalar>
 [[nodiscard]] bool is_rotation(const Matrix<3, 3, Scalar>& R) noexcept {
   const auto tolerance = std::sqrt(std::numeric_limits<Scalar>::epsilon());

@@ -8,7 +8,7 @@
 
 namespace fpbm::presets {
 
-/// Distance of the base of each of the two Pandas from the middle between them, along y [m].
+/// Distance of the base of each of the two Pandas from the middle between them, along y [m]: a choice.
 inline constexpr double kPandaOffset = 0.4;
 
 /// Two Pandas at a table, 0.8 m apart along y: "right" and "left", with the frames right_tip and left_tip.

@@ -7,7 +7,8 @@
 namespace fpbm {
 
 /// Posture k of a sequence that fills the ranges of the joints evenly: Weyl's sequence, with multiples of the square
-/// roots of the primes, modulo 1. A missing bound is replaced by −3 or 3 [rad or m].
+/// roots of the primes, modulo 1 (H. Weyl, Über die Gleichverteilung von Zahlen mod. Eins, 1916). A missing bound is
+/// replaced by −3 or 3 [rad or m], nearly a full turn.
 template <int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> spread_posture(const JointLimits<N, Scalar>& limits, int k) {
   constexpr int kPrimes[kMaxDof] = {2,   3,   5,   7,   11,  13,  17,  19,  23,  29,  31,  37,  41,  43,  47,  53,

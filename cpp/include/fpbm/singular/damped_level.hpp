@@ -8,8 +8,10 @@
 
 namespace fpbm {
 
-/// Radius ε of the damping of lower levels, whose rows are scaled (ScaledLevel). Effect: with 0.1, a circle of 0.1 m at
-/// 0.1 m/s on the second level of two Pandas that hold an object lags by 0.5 µm; with 0.2, by 0.73 mm.
+/// Radius ε of the damping of lower levels, whose rows are scaled (ScaledLevel). With 0.01 to 0.1,
+/// `examples/16_carry_a_tray.cpp` prints an error of 1e-10 m of the tray on its circle; with 0.15, 2e-5 m, and with
+/// 0.2, 4e-4 m. In ScaledLevel.a_position_is_reached_again with all trials, 112 of 120 positions are reached again; 99
+/// with 0.05, and 107 with 0.2.
 template <typename Scalar>
 inline constexpr Scalar kLevelRadius = Scalar(0.1);
 
@@ -88,7 +90,9 @@ class DampedLevel {
     return gram;
   }
 
-  /// This eigenvalue, relative to tr(LᵀL) + ε². Its inverse adds at most 1 % to tr((LᵀL)⁻¹) for ten zero columns.
+  /// This eigenvalue, relative to tr(LᵀL) + ε². More than 1, so that the eigenvalue is above ε². Not so large that the
+  /// pivot tolerance of the Cholesky factorisation, which is relative to this eigenvalue, rejects the others. 1 to 1e12
+  /// pass `*DampedLevel*`.
   static constexpr Scalar kApart = Scalar(1e3);
 
   Scalar epsilon_squared_;

@@ -56,8 +56,9 @@ struct ScaledLevel {
  private:
   /// ρ. With the radius 0.1 of lower levels (kLevelRadius), a direction is lost at σ = 0.03 ‖J‖_F because of the
   /// posture. Source of the value: of 120 positions below the axis of the tip of a Panda that leave the workspace and
-  /// return, 112 are reached again, and 97 with ρ = 0.1. Without scaled rows and with the radius 0.1 ‖J‖_F, 111 are
-  /// reached again.
+  /// return, 112 are reached again; 98 with ρ = 0.1, 107 with 0.2, 113 with 0.6, 110 with 1. `FPBM_ALL_TRIALS=1
+  /// fpbm_tests --gtest_filter=ScaledLevel.a_position*` prints this number. Without scaled rows and with the radius 0.1
+  /// ‖J‖_F, 111 are reached again.
   static constexpr Scalar kPosture = Scalar(0.3);
 };
 

@@ -25,24 +25,28 @@ template <typename Scalar>
 [[nodiscard]] std::optional<FixedAxis<Scalar>> fixed_axis(const Vector<3, Scalar>& left, const Vector<3, Scalar>& w,
                                                           const Vector<3, Scalar>& wd) noexcept {
   constexpr Scalar kEpsilon = std::numeric_limits<Scalar>::epsilon();
+  // In brackets: the range that passes TargetTurn.*.
+  constexpr Scalar kDirection = Scalar(32) * kEpsilon;  // [8 to 3e7 epsilon] Round-off error of the remaining rotation.
+  constexpr Scalar kParallel = Scalar(64) * kEpsilon;   // [2 to 6400 epsilon] Round-off error of w and wd.
+  constexpr Scalar kCorrection = Scalar(8) * kEpsilon;  // [0 to 800 epsilon] Largest correction in a tick.
   FixedAxis<Scalar> axis;
   const Scalar angle = left.cwiseAbs().maxCoeff(&axis.largest);
   if (!(angle > Scalar(0))) return {};
   const Eigen::Index k = axis.largest;
   // The remaining rotation is a difference of orientations, with an absolute round-off error. The round-off errors of w
   // and wd are relative.
-  const Scalar direction = Scalar(32) * kEpsilon * (Scalar(1) + angle) / angle;
+  const Scalar direction = kDirection * (Scalar(1) + angle) / angle;
   const Vector<3, Scalar>& moving = w(k) != Scalar(0) ? w : wd(k) != Scalar(0) ? wd : left;
   for (int i = 0; i < 3; ++i) {
     const Scalar share = left(i) / left(k);
     const Scalar along = moving(i) / moving(k);
     const Scalar away = share - along;
-    if (!(std::abs(away) <= direction && std::abs(along) <= Scalar(1) + Scalar(64) * kEpsilon)) return {};
-    if (!(std::abs(w(i) - along * w(k)) <= Scalar(64) * kEpsilon * std::abs(w(k)))) return {};
-    if (!(std::abs(wd(i) - along * wd(k)) <= Scalar(64) * kEpsilon * std::abs(wd(k)))) return {};
+    if (!(std::abs(away) <= direction && std::abs(along) <= Scalar(1) + kParallel)) return {};
+    if (!(std::abs(w(i) - along * w(k)) <= kParallel * std::abs(w(k)))) return {};
+    if (!(std::abs(wd(i) - along * wd(k)) <= kParallel * std::abs(wd(k)))) return {};
     axis.angles(i) = share;
     // The round-off errors of the angles would accumulate. A correction of the same magnitude prevents this.
-    const Scalar corrected = along + std::clamp(away, -Scalar(8) * kEpsilon, Scalar(8) * kEpsilon);
+    const Scalar corrected = along + std::clamp(away, -kCorrection, kCorrection);
     axis.motion(i) = std::clamp(corrected, Scalar(-1), Scalar(1));
   }
   return axis;

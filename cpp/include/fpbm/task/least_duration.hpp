@@ -32,7 +32,8 @@ class LeastDuration {
   /// the tip. sample(t) gives the velocity xd and acceleration xdd of the tip.
   template <typename Sample>
   [[nodiscard]] Scalar of(const Sample& sample) const {
-    constexpr int kSamples = 64;  // For each piece of the spline. search() refines them.
+    // For each piece of the spline. search() refines them, so that 16 to 256 pass WaypointsBounds.*.
+    constexpr int kSamples = 64;
     const auto& times = spline_.times();
     Scalar longest(0);
     for (std::size_t i = 1; i < times.size(); ++i) {
@@ -51,10 +52,14 @@ class LeastDuration {
     return longest;
   }
 
+  /// A path is slower than the fastest path by up to 1 %: this slack is in the search and in Waypoints::within().
+  /// WaypointsBounds.* prints the largest difference. A tenth of the slack needs 1.7 times the samples for poses.
   static constexpr Scalar kSlack = Scalar(1.005);
 
  private:
-  static constexpr int kHalvings = 20;  ///< Largest number of halvings, to 1e-8 of a piece.
+  /// Largest number of halvings, to 1e-8 of a piece, for intervals that may contain |Q| = 0 and have no finite bound. 5
+  /// to 40 pass WaypointsBounds.*.
+  static constexpr int kHalvings = 20;
 
   /// Norms of velocities and accelerations.
   template <typename Reference>
@@ -74,7 +79,9 @@ class LeastDuration {
   /// the slack.
   template <typename Sample>
   void search(const Sample& sample, std::size_t i, Scalar middle, Scalar half, int halvings, Scalar& longest) const {
-    constexpr Scalar kRaise = Scalar(1.004);  // Below the slack, so that the search ends.
+    // Below kSlack, otherwise an interval with a peak in between is halved to the end. Any value from 1 needs the same
+    // number of samples.
+    constexpr Scalar kRaise = Scalar(1.004);
     const TipBounds<Scalar> here = peaks(sample(middle));
     if (share(here) > kRaise * longest) longest = share(here);
     if (halvings == 0 || share(limits(here, spline_.derivatives(i, middle), half)) <= kSlack * longest) return;

@@ -34,6 +34,7 @@ class Sequence {
   }
 
  private:
+  /// Relative. A multiple k h of the step h = T/k has a round-off error of at most ε.
   static constexpr Scalar kRounding = 8 * std::numeric_limits<Scalar>::epsilon();
 
   First first_;

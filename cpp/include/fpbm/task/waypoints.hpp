@@ -59,7 +59,7 @@ class Waypoints {
       return unit.sample(t);
     });
     if (!(duration > Scalar(0))) validation::reject("bounds", ": at least one must limit the tip");
-    return lasting(points, std::ceil(Scalar(100.5) * duration) / Scalar(100));
+    return lasting(points, std::ceil(Scalar(100.5) * duration) / Scalar(100));  // 100.5 = 100 LeastDuration::kSlack.
   }
 
   [[nodiscard]] Scalar duration() const noexcept { return spline_.times().back(); }
