@@ -487,7 +487,10 @@ def test_standard_output(arm: Path) -> None:
 
 def test_capsules_of_a_file(arm: Path) -> None:
     result = call(arm, "--tip", "tip", "-o", "-", "--capsules")
-    assert_refused(result, f"{arm}: has no <collision> geometry")
+    assert_refused(
+        result,
+        f"{arm}: has no <collision> geometry: must be on at least one link: add it, or give capsules to Clearance()",
+    )
     box = '<link name="tip"><collision><geometry><box size="0.1 0.2 0.5"/></geometry></collision></link>'
     arm.write_text(URDF.replace('<link name="tip"/>', box))
     for base, link, source in (None, 2, "two.urdf, tip tip"), ("mid", 1, "two.urdf, base mid, tip tip"):
