@@ -358,7 +358,7 @@ BALL = fp.Capsule(0, [0, 0, 0], [0, 0, 0], 0.1, "ball")
         (lambda: fp.Clearance([], allowed=[("a",)]), "allowed[0] = ('a',): must be two names"),
         (
             lambda: fp.Clearance(CAPSULES, allowed=[("base", "wrsit")]),
-            "allowed[0]: no shape has the name 'wrsit'; did you mean 'wrist'?",
+            "allowed[0] has 'wrsit': must be names of shapes; did you mean 'wrist'?",
         ),
         (lambda: CLEARANCE.pairs(PLANAR), "capsules[3].link = 4: must be a link of the arm"),
         (lambda: CLEARANCE.nearest(PANDA, [0, 0]), "q has 2 entries: must have 7, one per joint"),
