@@ -725,7 +725,9 @@ def test_servo_says_what_is_wrong() -> None:
     Path("job.toml").write_text("[arm]\nkind = 'preset'\nname = 'panda'\n[run]\nqd0 = [0.1, 0, 0, 0, 0, 0, 0]")
     assert refused("servo", "--job", "job.toml") == "servo starts at rest: remove qd0, or use track"
     pytest.importorskip("viser")
-    assert refused("servo", "panda", "--q0", "9,0,0,-2,0,2,0") == "--q0[0] = 9: must be within the joint's range"
+    assert refused("servo", "panda", "--q0", "9,0,0,-2,0,2,0") == (
+        "--q0[0] = 9: must be within the joint's range, from -2.8973 to 2.8973"
+    )
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
         assert f"port {port} is in use" in refused("servo", "panda", "--port", str(port), "--no-browser")
