@@ -123,6 +123,6 @@ async function main() {
 }
 
 main().catch((error) => {
-  element("status").textContent = `This browser cannot run the page: ${error.message}`;
+  element("status").textContent = `This browser cannot run the page: ${error.message}. Use a current browser.`;
   throw error;
 });

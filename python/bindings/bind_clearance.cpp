@@ -76,9 +76,13 @@ void move_obstacle(Clearance<kDynamic>& clearance, const std::string& name, cons
   if (found == obstacles.end()) {
     std::string names;
     for (const auto& each : obstacles) names += (names.empty() ? "" : ", ") + each.name;
-    validation::reject("name", " = '" + name + "': must be one of the obstacles" + (names.empty() ? "" : ": " + names));
+    validation::reject("name", " = '" + name + "': must be one of the obstacles: " + (names.empty() ? "none" : names));
   }
-  if (shape.any.index() != found->shape.index()) validation::reject("shape", ": must have the kind of the obstacle");
+  if (shape.any.index() != found->shape.index()) {
+    constexpr std::array<const char*, 3> kKinds = {"Capsule", "HalfSpace", "Cuboid"};  // In the order of WorldShape.
+    validation::reject(
+        "shape", std::string(": must be a ") + kKinds.at(found->shape.index()) + ", like obstacle '" + name + "'");
+  }
   if (shape.link != 0) validation::fail("shape.link", shape.link, "0, the base");
   clearance.move(static_cast<std::size_t>(found - obstacles.begin()), shape.any, velocity);
 }

@@ -67,7 +67,10 @@ Path line(const ArrayLike& displacement, double duration, const std::string& law
 
 Path in_plane(const Path& path, const ArrayLike& axes) {
   const auto* flat = std::get_if<AnyPath<Position<2>>>(&path.any);
-  if (flat == nullptr) validation::reject("in_plane", ": the path must be a planar path of positions");
+  if (flat == nullptr) {
+    validation::reject("in_plane",
+                       ": the path must be planar and without rotation: call in_plane before with_rotation");
+  }
   const Matrix<2, 3> rows = matrix(axes, "plane", 2, 3);
   return {AnyPath<Position<3>>(InPlane(*flat, Vector<3>(rows.row(0)), Vector<3>(rows.row(1))))};
 }
@@ -77,7 +80,9 @@ Path with_rotation(const Path& path, const ArrayLike& rotation, const std::strin
     return {AnyPath<PlanarPose>(WithRotation(*flat, Vector<1>(number(rotation, "rotation")), AnyTimeLaw(law)))};
   }
   const auto* spatial = std::get_if<AnyPath<Position<3>>>(&path.any);
-  if (spatial == nullptr) validation::reject("with_rotation", ": the path rotates the tip already");
+  if (spatial == nullptr) {
+    validation::reject("with_rotation", ": the path rotates the tip already: must be a path of positions");
+  }
   return {AnyPath<Pose>(WithRotation(*spatial, fixed_vector<3>(rotation, "rotation"), AnyTimeLaw(law)))};
 }
 

@@ -167,8 +167,10 @@ class PyTracker {
   [[nodiscard]] PyTick tick(PyTargetFilter& filter) {
     return visit(kByName, [&](auto& tracker, auto space) {
       auto* same = std::get_if<TargetFilter<decltype(space)>>(&filter.any);
-      if (same == nullptr) validation::reject("filter", ": is for another task");
-      if (same->dt() != dt_) validation::fail("filter's dt", same->dt(), "the tracker's");
+      if (same == nullptr) {
+        validation::reject("filter", ": is for another task: must be a TargetFilter with the tracker's task");
+      }
+      if (same->dt() != dt_) validation::fail("filter's dt", same->dt(), "the tracker's dt = ", dt_);
       return tick_at(tracker, tracker.state().q, [&] { return tracker.tick(*same); });
     });
   }

@@ -32,7 +32,11 @@ std::vector<int> joints_of(const py::handle& given, const Model& model) {
   for (const py::handle each : given) {
     const auto name = py::cast<std::string>(each);
     const auto found = std::find(model.joint_names.begin(), model.joint_names.end(), name);
-    if (found == model.joint_names.end()) validation::reject("joints", ": the robot has no joint '" + name + "'");
+    if (found == model.joint_names.end()) {
+      std::string known;
+      for (const std::string& joint : model.joint_names) known += (known.empty() ? "" : ", ") + joint;
+      validation::reject("joints", " has '" + name + "': must be joints of the robot: " + known);
+    }
     joints.push_back(static_cast<int>(found - model.joint_names.begin()));
   }
   return joints;

@@ -30,7 +30,8 @@ std::optional<StackMotion::Source> StackLoop::source_of(const StackTask& task, c
     } else if (task.kind == TaskKind::kPose) {
       if (auto* found = std::get_if<3>(&any)) return found;
     }
-    validation::reject(argument, ": is for another task than '" + task.name + "'");
+    validation::reject(argument,
+                       ": is for another task than '" + task.name + "': must be for the same kind, position or pose");
   };
   if (py::isinstance<PyFollower>(given)) return same(py::cast<PyFollower&>(given).any, "follower");
   if (py::isinstance<PyTargetFilter>(given)) {
@@ -39,7 +40,7 @@ std::optional<StackMotion::Source> StackLoop::source_of(const StackTask& task, c
         [&](auto* each) {
           if constexpr (!std::is_same_v<decltype(each), AnyFollower<Position<3>>*> &&
                         !std::is_same_v<decltype(each), AnyFollower<Pose>*>) {
-            if (each->dt() != dt_) validation::fail("filter's dt", each->dt(), "the tracker's");
+            if (each->dt() != dt_) validation::fail("filter's dt", each->dt(), "the tracker's dt = ", dt_);
           }
         },
         source);
@@ -118,7 +119,9 @@ PyPoints StackLoop::points() const {
 
 Array StackLoop::frame(const std::string& name) const {
   const StackTask& task = motion_.plan().task(name);
-  if (task.kind == TaskKind::kPosture) validation::reject("task", " = '" + name + "': postures have no frame");
+  if (task.kind == TaskKind::kPosture) {
+    validation::reject("task", " = '" + name + "': postures have no frame: must be a task of a frame");
+  }
   return array_of(motion_.frame_of(task));
 }
 

@@ -77,7 +77,7 @@ struct StackPlan {
       if (found != nullptr) validation::reject("task", ": several tasks follow paths: must be the name of one");
       found = &each;
     }
-    if (found == nullptr) validation::reject("task", ": the stack has no position or pose to follow a path");
+    if (found == nullptr) validation::reject("task", ": the stack has no position or pose to follow a path: add one");
     return *found;
   }
   /// Entries of all errors, one task after another.

@@ -25,7 +25,7 @@ class StackTrackerOf final : public StackTracker {
     if constexpr (kLevel == Level::kAcceleration) {
       return tracker_.resolve_measured(measured.q, measured.qd, reference);
     } else {
-      throw std::invalid_argument("resolve_measured: a velocity-level scheme has no accelerations");
+      throw std::invalid_argument("resolve_measured: the scheme is at velocity level: must be at acceleration level");
     }
   }
 

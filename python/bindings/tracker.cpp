@@ -28,7 +28,7 @@ class TrackerAt final : public AnyTracker<Space> {
     if constexpr (kLevel == Level::kAcceleration) {
       return tracker_.resolve_measured(measured.q, measured.qd, reference);
     } else {
-      throw std::invalid_argument("resolve_measured: a velocity-level scheme has no accelerations");
+      throw std::invalid_argument("resolve_measured: the scheme is at velocity level: must be at acceleration level");
     }
   }
 

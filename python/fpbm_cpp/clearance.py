@@ -74,7 +74,7 @@ class Clearance(Data):
                 raise ParameterError("allowed", i, pair, f"allowed[{i}] = {pair!r:.80}: must be two names")
             for name in pair:
                 if name not in names:
-                    problem = f"allowed[{i}]: no shape has the name {name!r}{suggestion(name, names)}"
+                    problem = f"allowed[{i}] has {name!r}: must be names of shapes{suggestion(name, names)}"
                     raise ParameterError("allowed", i, name, problem)
         for name, values in {"capsules": capsules, "obstacles": obstacles, "allowed": allowed}.items():
             object.__setattr__(self, name, values)

@@ -627,7 +627,7 @@ TEST(Guard, names_the_invalid_argument) {
   EXPECT_EQ(complaint([&] {
               (void)Clearance<7>(chain, {{8, {zero, zero, 0.1}, "no link"}}, {}, 0.0);
             }),
-            "capsules[0].link = 8: must be a link of the arm");
+            "capsules[0].link = 8: must be a link of the arm, from 0 to 7");
   const std::string close = complaint([&] { (void)panda_tracker({{"floor", HalfSpace<>{Vector<3>::UnitZ(), 0.6}}}); });
   EXPECT_EQ(close.substr(0, 31), "q0: hand and floor overlap by 0");
   EXPECT_NE(close.find(R"( m, with margin=0.01; give allowed={{"hand", "floor"}})"), std::string::npos) << close;

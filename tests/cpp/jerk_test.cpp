@@ -447,7 +447,7 @@ TEST(Jerk, nonsense_is_refused) {
   EXPECT_EQ(complaint([&] {
               limits.require_viable({still, still}, Vector<2>(0.0, 10.5));
             }),
-            "qdd0[1] = 10.5: must be within the joint's bound");
+            "qdd0[1] = 10.5: must be within the joint's bound of 10");
   EXPECT_EQ(complaint([&] {
               limits.require_viable({still, Vector<2>(1.9, 0.0)}, Vector<2>(9.0, 0.0));
             }),

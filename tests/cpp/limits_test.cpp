@@ -408,7 +408,7 @@ TEST(Limits, name_the_invalid_bound) {
   EXPECT_EQ(complaint([&] {
               limits.require_viable({Vector<2>(0.0, 1.5), Vector<2>::Zero()});
             }),
-            "q0[1] = 1.5: must be within the joint's range");
+            "q0[1] = 1.5: must be within the joint's range, from -1 to 1");
   EXPECT_EQ(complaint([&] {
               limits.require_viable({Vector<2>(0.0, 0.9), Vector<2>(0.0, 1.5)});
             }),

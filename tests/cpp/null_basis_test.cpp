@@ -80,7 +80,7 @@ TEST_P(NullBasisOf, is_orthonormal_at_every_rank) {
 }
 
 /// A row that decreases to zero, also if its square underflows.
-TEST_P(NullBasisOf, is_so_while_a_row_fades) {
+TEST_P(NullBasisOf, is_orthonormal_while_a_row_fades) {
   Random random(1);
   const Eigen::MatrixXd A = random_matrix(random);
   const double least = GetParam().epsilon < 1e-10 ? 1e-307 : 1e-37;

@@ -277,7 +277,8 @@ TEST(SpacePaths, bad_ones_are_refused) {
               return Way::lasting({{0, 0}, {0, 0}}, 1.0);
             }),
             "points[1]: must differ from the previous point");
-  EXPECT_EQ(refusal([&] { return Way::within(points, {}); }), "bounds: at least one must limit the tip");
+  EXPECT_EQ(refusal([&] { return Way::within(points, {}); }),
+            "bounds: at least one must limit the tip: give a bound on velocity or acceleration");
   EXPECT_EQ(refusal([&] { return Way::within(points, {0.0}); }), "velocity = 0: must be positive");
 }
 

@@ -452,7 +452,7 @@ TEST(Tracker, names_the_invalid_argument) {
   Vector<7> q0 = bent();
   q0(3) = 0.5;
   EXPECT_EQ(complaint([&] { CompiledTracker(panda(), Pose{}, settling(), q0); }),
-            "q0[3] = 0.5: must be within the joint's range");
+            "q0[3] = 0.5: must be within the joint's range, from -3.0718 to -0.0698");
   Chain<> chain = panda_without_jerk();
   for (Joint<>& joint : chain.joints) joint.bounds.acceleration = JointBounds<>::kNone;
   const SerialArm<7> unbounded(chain);
@@ -465,7 +465,7 @@ TEST(Tracker, names_the_invalid_argument) {
       complaint([&] {
         CompiledTracker(panda(), Pose{}, settling(), State<7>{bent(), Vector<7>::Zero()}, TrackerOptions<>{}, slower);
       }),
-      "limits' tick = 0.002: must be the tracker's dt");
+      "limits' tick = 0.002: must be the tracker's dt = 0.001");
 }
 
 }  // namespace

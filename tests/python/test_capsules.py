@@ -316,7 +316,9 @@ REFUSED = {
     geometry("sphere"): "link 'tip' has no <sphere radius=\"...\">",
     geometry('sphere radius="-1"'): "link 'tip': sphere of -1: must not be negative",
     geometry("mesh"): "link 'tip' has no <mesh filename=\"...\">",
-    geometry('mesh filename="package://no/where.stl"'): "link 'tip': mesh 'package://no/where.stl' is not found",
+    geometry(
+        'mesh filename="package://no/where.stl"'
+    ): "link 'tip': mesh 'package://no/where.stl' is not found: must be below",
 }
 
 
@@ -330,11 +332,15 @@ def test_refused(collision: str, message: str, write) -> None:
 @pytest.mark.parametrize(
     ("name", "content", "message"),
     [
-        ("part.stl", b"no mesh", "trimesh cannot read it|has no triangles"),
-        ("part.obj", b"", "trimesh cannot read it|has no triangles"),
+        ("part.stl", b"no mesh", "that trimesh can read|has no triangles"),
+        ("part.obj", b"", "that trimesh can read|has no triangles"),
         ("part.obj", b"v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n", "its vertices are not finite"),
-        ("part.dae", b"<!DOCTYPE x [<!ENTITY e SYSTEM 'file:///etc/passwd'>]><COLLADA>&e;</COLLADA>", "cannot read it"),
-        ("part.pickle", b"", "must be one of stl, obj, dae"),
+        (
+            "part.dae",
+            b"<!DOCTYPE x [<!ENTITY e SYSTEM 'file:///etc/passwd'>]><COLLADA>&e;</COLLADA>",
+            "must be a dae file",
+        ),
+        ("part.pickle", b"", "must be one of stl, obj, dae: convert the mesh"),
     ],
 )
 def test_what_is_no_mesh(name: str, content: bytes, message: str, tmp_path: Path, write) -> None:

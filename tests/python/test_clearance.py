@@ -358,9 +358,9 @@ BALL = fp.Capsule(0, [0, 0, 0], [0, 0, 0], 0.1, "ball")
         (lambda: fp.Clearance([], allowed=[("a",)]), "allowed[0] = ('a',): must be two names"),
         (
             lambda: fp.Clearance(CAPSULES, allowed=[("base", "wrsit")]),
-            "allowed[0]: no shape has the name 'wrsit'; did you mean 'wrist'?",
+            "allowed[0] has 'wrsit': must be names of shapes; did you mean 'wrist'?",
         ),
-        (lambda: CLEARANCE.pairs(PLANAR), "capsules[3].link = 4: must be a link of the arm"),
+        (lambda: CLEARANCE.pairs(PLANAR), "capsules[3].link = 4: must be a link of the arm, from 0 to 3"),
         (lambda: CLEARANCE.nearest(PANDA, [0, 0]), "q has 2 entries: must have 7, one per joint"),
         (lambda: fp.Tracker(PANDA, fp.MAN(), READY, clearance=3), "clearance: must be a Clearance"),
         (
@@ -368,10 +368,10 @@ BALL = fp.Capsule(0, [0, 0, 0], [0, 0, 0], 0.1, "ball")
             "q0: hand and upper arm are 0.2372 m apart, closer than margin=0.3; give margin=0.2372 or ",
         ),
         (lambda: tracker().move("tabel", TABLE), "name = 'tabel': must be one of the obstacles: table"),
-        (lambda: tracker().move("table", BALL), "shape: must have the kind of the obstacle"),
+        (lambda: tracker().move("table", BALL), "shape: must be a HalfSpace, like obstacle 'table'"),
         (lambda: tracker().move("table", TABLE, (0, 0, np.nan)), "velocity[2] = nan: must be finite"),
         (lambda: tracker(BALL).move("ball", LINKS[0]), "shape.link = 1: must be 0, the base"),
-        (lambda: fp.Tracker(PANDA, fp.MAN(), READY).move("x", TABLE), "name = 'x': must be one of the obstacles"),
+        (lambda: fp.Tracker(PANDA, fp.MAN(), READY).move("x", TABLE), "name = 'x': must be one of the obstacles: none"),
     ],
 )
 def test_what_is_wrong_is_said(make: Callable[[], Any], message: str) -> None:

@@ -170,7 +170,7 @@ def test_a_motion_that_stops_is_told_and_fails() -> None:
     assert "status" in result.stdout
     assert "stopped after t = " in result.stdout
     assert "Keep the path inside the workspace" in " ".join(result.stdout.split())
-    assert result.stderr == "Error: the motion is not complete\n"
+    assert result.stderr == "Error: the motion is not complete: the status above has the cause and a remedy\n"
 
 
 def test_a_motion_without_a_sample() -> None:
@@ -305,7 +305,9 @@ def test_a_joint_beyond_a_bound_is_said(name: str) -> None:
 def test_a_motion_without_a_sample_is_no_film() -> None:
     result = call("track", "planar:1,1", "--q0", "0,0", "--out", "out", "--also", "gif")
     assert result.exit_code == 1
-    assert result.stderr == "Error: cannot write run.gif: run: has no samples to animate\n"
+    assert result.stderr == (
+        "Error: cannot write run.gif: run: has no samples: must have at least one: run.status has the cause\n"
+    )
 
 
 # Errors
@@ -384,7 +386,7 @@ def test_an_arm_is_asked_for() -> None:
 def test_a_folder_that_cannot_be_written_to() -> None:
     Path("file").write_text("mine")
     for name in ("sweep",):
-        assert refused(name, "panda", *QUICK, "--out", "file") == "cannot write to file: it is a file"
+        assert refused(name, "panda", *QUICK, "--out", "file") == "cannot write to file: it is a file: give a folder"
         assert refused(name, "panda", *QUICK, "--out", "file/below") == "cannot write to file/below: Not a directory"
     line = call("track", "panda", *QUICK, "--save-job", "file/job.toml").stderr
     assert line == "Error: cannot write to file/job.toml: Not a directory\n"
@@ -464,7 +466,7 @@ def test_compare_refuses() -> None:
     assert "did you mean 'alpha'?" in refused("compare", "--job", "job.toml", "--schemes", "fpbm")
     result = call("compare", "planar:1,1,1,1", "--q0", "0,0,0,0")
     assert result.exit_code == 1
-    assert result.stderr == "Error: no motion is complete\n"
+    assert result.stderr == "Error: no motion is complete: the remarks above have the causes and remedies\n"
 
 
 # Sweep
@@ -504,7 +506,7 @@ def test_sweep_says_what_became_of_motions_that_stop() -> None:
     result = call("sweep", "panda", "--radius", "0.5", "--starts", "3")
     assert result.exit_code == 1
     assert "3 of 3: the tip has left its reference" in result.stdout
-    assert result.stderr == "Error: no motion is complete\n"
+    assert result.stderr == "Error: no motion is complete: the remarks above have the causes and remedies\n"
 
 
 def interrupted(arguments: list[str], after: str, seconds: float) -> tuple[str, str, int]:
@@ -723,7 +725,9 @@ def test_servo_says_what_is_wrong() -> None:
     Path("job.toml").write_text("[arm]\nkind = 'preset'\nname = 'panda'\n[run]\nqd0 = [0.1, 0, 0, 0, 0, 0, 0]")
     assert refused("servo", "--job", "job.toml") == "servo starts at rest: remove qd0, or use track"
     pytest.importorskip("viser")
-    assert refused("servo", "panda", "--q0", "9,0,0,-2,0,2,0") == "--q0[0] = 9: must be within the joint's range"
+    assert refused("servo", "panda", "--q0", "9,0,0,-2,0,2,0") == (
+        "--q0[0] = 9: must be within the joint's range, from -2.8973 to 2.8973"
+    )
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
         assert f"port {port} is in use" in refused("servo", "panda", "--port", str(port), "--no-browser")

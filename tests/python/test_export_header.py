@@ -359,7 +359,7 @@ def test_namespace_after_a_file(stem: str, name: str) -> None:
     "name", ["", "7up", "a b", "a-b", "a\n", "_a", "a__b", "int", "fpbm", "std::x", "a::", "::a", "a:b", "é", "x{"]
 )
 def test_name_that_no_namespace_can_have(name: str) -> None:
-    with pytest.raises(ValueError, match=r"must be a C\+\+ identifier that is not taken") as caught:
+    with pytest.raises(ValueError, match=r"must be a C\+\+ identifier, not a keyword, Eigen, fpbm or std") as caught:
         export_header([Joint()], np.eye(4), name=name)
     assert str(caught.value).startswith(f"name = {name!r}: ")
 
@@ -487,7 +487,10 @@ def test_standard_output(arm: Path) -> None:
 
 def test_capsules_of_a_file(arm: Path) -> None:
     result = call(arm, "--tip", "tip", "-o", "-", "--capsules")
-    assert_refused(result, f"{arm}: has no <collision> geometry")
+    assert_refused(
+        result,
+        f"{arm}: has no <collision> geometry: must be on at least one link: add it, or give capsules to Clearance()",
+    )
     box = '<link name="tip"><collision><geometry><box size="0.1 0.2 0.5"/></geometry></collision></link>'
     arm.write_text(URDF.replace('<link name="tip"/>', box))
     for base, link, source in (None, 2, "two.urdf, tip tip"), ("mid", 1, "two.urdf, base mid, tip tip"):
@@ -551,7 +554,8 @@ def test_errors_are_one_plain_line(arm: Path, tmp_path: Path, monkeypatch: pytes
     broken.write_text("<robot/")
     assert_refused(call(broken, *to_out), f"{broken}: line 1: invalid XML: unclosed token")
     broken.unlink()
-    assert_refused(call(arm, *to_out, "--name", "int"), "name = 'int': must be a C++ identifier that is not taken")
+    demand = "must be a C++ identifier, not a keyword, Eigen, fpbm or std"
+    assert_refused(call(arm, *to_out, "--name", "int"), f"name = 'int': {demand}")
     assert_refused(call(arm, "--tip", "tip", "-o", tmp_path), f"cannot write to {tmp_path}: Is a directory")
     lost = tmp_path / "no" / "out.hpp"
     assert_refused(call(arm, "--tip", "tip", "-o", lost), f"cannot write to {lost}: No such file or directory")

@@ -80,8 +80,8 @@ def test_panels_that_a_run_has_nothing_for_are_left_out() -> None:
         (["velocity"], "panels: 'velocity' must be one of arm, error, axis_errors, .*null_space$"),
         ("velocity", "panels: 'velocity' must be one of arm"),
         (["arm", "error", "arm"], "panels: 'arm' is given twice"),
-        (["scale"], r"panels: \('scale',\): must have data in this run"),
-        ([], r"panels: \(\): must have data"),
+        (["scale"], r"panels = \('scale',\): no data in this run: must have one of arm, error"),
+        ([], r"panels = \(\): no data in this run"),
     ],
 )
 def test_wrong_panels(names: list[str], message: str) -> None:

@@ -111,7 +111,7 @@ def test_motions_of_a_sweep_are_made_again(q0):
 
 
 def test_a_run_that_does_not_say_how_it_was_made(run):
-    with pytest.raises(ValueError, match=r"options = {}: must hold the arguments"):
+    with pytest.raises(ValueError, match=r"options = {}: must have the arguments of simulate"):
         replace(run, options={}).replay()
 
 
@@ -256,7 +256,7 @@ def test_what_other_libraries_have_for_arrays(q0, run, tmp_path):
 NO_PATHS = {
     "another module's": ({"kind": "os.system"}, r"path.kind = 'os.system': must be one of circle, .*sequence"),
     "nothing": ({}, "path.kind: is missing"),
-    "unhashable": ({"kind": ["circle"]}, "is not a valid run"),
+    "unhashable": ({"kind": ["circle"]}, "must be a valid run"),
     "wrong numbers": ({"kind": "circle", "radius": -1.0, "duration": 1.0}, "path.radius = -1: must be positive"),
     "wrong kinds": ({"kind": "circle", "radius": "x", "duration": 1.0}, "path.radius = 'x': must be a number"),
     "too many": ({"kind": "circle", "radius": 1.0, "duration": 1.0, "x": 1}, "path.x: is not a key of circle"),
@@ -324,15 +324,15 @@ def test_a_file_that_names_other_files_is_refused(table, run, tmp_path):
         ({"format": "other"}, {}, "has the format 'other' 1"),
         ({"status": {"code": "BORED", "time": 1.0, "q": []}}, {}, "BORED"),
         ({"task": "dance"}, {}, "task = 'dance'"),
-        ({"options": 7}, {}, "is not a valid run"),
+        ({"options": 7}, {}, "must be a valid run"),
         ({}, {"meta": None}, "has no arm, path and scheme"),
         ({}, {"meta": np.array("{")}, "must be a complete file from Run.save"),
         ({}, {"meta": np.array("[" * 100_000)}, "must be a complete file from Run.save"),
-        ({}, {"q": None}, "is not a valid run: .*q"),
+        ({}, {"q": None}, "must be a valid run .*q"),
         ({}, {"q": np.zeros((101, 3))}, r"q has shape \(101, 3\) and type float64: must have \(101, 4\) and float64"),
         ({}, {"x": np.zeros((101, 3))}, r"x has shape \(101, 3\)"),
         ({}, {"t": np.zeros(100)}, "has shape"),
-        ({}, {"t": np.zeros(())}, "is not a valid run"),
+        ({}, {"t": np.zeros(())}, "must be a valid run"),
         ({}, {"q": np.zeros((101, 4), int)}, "type int64: must have"),
         ({}, {"saturated": np.zeros((101, 4))}, r"saturated has shape \(101, 4\) and type float64"),
     ],

@@ -161,7 +161,7 @@ def test_a_singular_start_keeps_nothing(arm, circle):
         ({"task": "speed"}, "task = 'speed': must be 'position' or 'pose'"),
         ({"path": fp.Line([1, 2, 3], 1.0)}, "path: is in space, and the arm is planar: must be a planar path"),
         ({"path": fp.Line([1, 2], 1.0).with_rotation(0.5)}, "path: rotates the tip, which needs task='pose'"),
-        ({"path": fp.Line([1, 2, 3], 1.0).with_rotation([0, 0, 1]), "task": "pose"}, "which needs another kind of arm"),
+        ({"path": fp.Line([1, 2, 3], 1.0).with_rotation([0, 0, 1]), "task": "pose"}, "must be a planar path"),
         ({"scheme": fp.WMVN([1, 2, 3])}, "weights has 3 entries: must have 4"),
         ({"scheme": fp.MAN(c=[0, 0])}, "c has 2 entries: must have 4"),
     ],

@@ -41,7 +41,7 @@ def test_pairs_are_in_order_and_there_once(write) -> None:
         ("<!DOCTYPE r [<!ENTITY e 'a'>]><robot>&e;</robot>", "line 1: has a DOCTYPE: must have none"),
         ("<robot>" + "<a>" * 100, "XML elements are nested more than 64 deep"),
         ("<robot>", "line 1: invalid XML: no element found"),
-        ("<srdf/>", "line 1: the root is <srdf>: must be <robot>"),
+        ("<srdf/>", "line 1: the root is <srdf>: must be <robot>, as in a URDF or SRDF file"),
     ],
 )
 def test_refused(text: str, message: str, write) -> None:

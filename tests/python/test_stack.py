@@ -318,7 +318,10 @@ def test_wrong_tasks(make, message):
             fp.Stack(fp.PoseTask("elbow")),
             "frame = 'elbow': must be a frame, or the joint of a link: 'base', 'tip', 'panda_joint1'",
         ),
-        (fp.Stack(fp.PostureTask(joints=("elbow",))), "joints: the robot has no joint 'elbow'"),
+        (
+            fp.Stack(fp.PostureTask(joints=("elbow",))),
+            "joints has 'elbow': must be joints of the robot: panda_joint1, panda_joint2",
+        ),
         (fp.Stack(fp.PostureTask([1, 2])), "posture"),
         (fp.Stack([fp.PoseTask(), fp.PositionTask()]), "rows of level.0. = 9"),
         (fp.Stack([fp.AxisTask(name=n) for n in "abc"]), "more than two tasks of frames"),
@@ -334,7 +337,7 @@ def test_stacks_that_do_not_suit_an_arm(panda, balanced, stack, message):
 def test_wrong_schemes(panda):
     weights = np.ones(7)
     for scheme, message in [
-        (fp.FPBM(0.6, weights, 10, 25), "k1 = 10: must be 0: the tasks of a stack have gains"),
+        (fp.FPBM(0.6, weights, 10, 25), "k1 = 10: must be 0: give gains to the tasks of the stack"),
         (fp.MVN(k=2), "k = 2: must be 0"),
         (fp.Balanced(0.6, weights, manipulability_gain=1), "must not be given with a stack"),
     ]:

@@ -522,7 +522,7 @@ def test_ctrl_c_stops_at_once(tmp_path, executor, hold):
         ({"schemes": []}, "schemes: must have at least one scheme"),
         ({"schemes": [fp.MVN(), fp.WMVN([1, 2, 3])]}, r"schemes\[1\]: weights has 3 entries: must have 4"),
         ({"schemes": fp.MAN(c=[0, 0])}, r"schemes\[0\]: c has 2 entries: must have 4"),
-        ({"workers": 0}, "workers = 0: must be 1 at least"),
+        ({"workers": 0}, "workers = 0: must be at least 1"),
         ({"workers": 1, "executor": Broken()}, "workers: must not be given with an executor"),
     ],
 )

@@ -204,7 +204,7 @@ def test_leads_a_tracker(arm, q0):
     np.testing.assert_array_equal(target_filter.x, target)
     with pytest.raises(fp.ParameterError, match="another task"):
         tracker.tick(fp.TargetFilter(np.zeros(3), **LINEAR))
-    with pytest.raises(fp.ParameterError, match=r"filter's dt = 0.002: must be the tracker's"):
+    with pytest.raises(fp.ParameterError, match=r"filter's dt = 0.002: must be the tracker's dt = 0.001"):
         tracker.tick(fp.TargetFilter(np.zeros(2), **LINEAR, dt=2e-3))
 
 

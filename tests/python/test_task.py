@@ -128,13 +128,13 @@ def test_repr_says_how_it_was_made():
             lambda: fp.Circle(0.1, 1.0).in_plane([1, 0, 0]),
             r"plane = \[1, 0, 0\]: must be real numbers of shape \(2, 3\)",
         ),
-        (lambda: fp.Line([1, 2, 3], 1.0).in_plane("xy"), "in_plane: the path must be a planar path of positions"),
+        (lambda: fp.Line([1, 2, 3], 1.0).in_plane("xy"), "in_plane: the path must be planar and without rotation"),
         (lambda: fp.Circle(0.1, 1.0).with_rotation([0, 0, 1]), "rotation: must have 0 dimensions"),
         (lambda: fp.Line([1, 2, 3], 1.0).with_rotation(1.0), "rotation: must have 1 dimension"),
         (lambda: fp.Line([1, 2], 1.0).with_rotation(np.nan), "rotation = nan: must be finite"),
         (
             lambda: fp.Line([1, 2], 1.0).with_rotation(1.0).with_rotation(1.0),
-            "with_rotation: the path rotates the tip already",
+            "with_rotation: the path rotates the tip already: must be a path of positions",
         ),
         (lambda: fp.Line([1, 2], 1.0).with_rotation(1.0).then(fp.Line([1, 2, 3], 1.0)), "path: rotates the tip"),
         (

@@ -256,7 +256,7 @@ def test_bad_references(panda, settling):
     with pytest.raises(ValueError, match="follower: is for another task"):
         tracker.tick(other.follow(fp.Circle(0.1, 1.0).in_plane("xy")))
     slow = fp.Tracker(panda, fp.MVN(), BENT)
-    with pytest.raises(ValueError, match="velocity-level"):
+    with pytest.raises(ValueError, match="must be at acceleration level"):
         slow.resolve_measured(BENT, np.zeros(7), slow.tip)
 
 

@@ -161,9 +161,7 @@ def test_jerk_and_a_frankas_bound_on_velocity_are_read_where_they_are_stated(wri
     assert (a.jerk, b.jerk) == (2500, 5000)
     for broken in ('velocity_offset="0.3"', 'velocity_offset="-1" deceleration_limit="6"'):
         urdf = write(three_links(Z + limit + f"<position_based_velocity_limits {broken}/>", Z + LIMIT))
-        with pytest.raises(
-            ValueError, match="joint 'a': <position_based_velocity_limits> must have velocity_offset and"
-        ):
+        with pytest.raises(ValueError, match="joint 'a': <position_based_velocity_limits>: must have velocity_offset"):
             read_urdf(urdf, "tip")
 
 
@@ -446,10 +444,23 @@ def test_follower_is_held_where_the_base_is_below_its_leader(write) -> None:
         (c,), _ = read_urdf(file, "tip", "mid")
     assert c.name == "c"
     np.testing.assert_allclose(c.placement, moved("revolute", [0, 0, 1], 0.3), rtol=0, atol=1e-15)
-    assert refusal(file, "far", "mid") == "all moving joints are held: 'b': at least one must move"
+    assert refusal(file, "far", "mid") == (
+        "all joints between base and tip mimic joints elsewhere: 'b': at least one must have a drive: "
+        "give another base or tip"
+    )
 
 
 # Refused
+
+# Ends of messages.
+NO_LINKS = "links without a parent joint: none: must be one, the root: add the links of the robot"
+NO_LINK = "does not exist: must be a <link> of the file: add the link, or correct the name"
+TREE_OF = "must form a tree: remove a joint of the loop"
+COUNT = "must be 1 to 64: give another base or tip"
+DRIVE = "one joint must have a drive: remove its <mimic>"
+NO_LIMIT = 'must have <limit velocity="...">'
+ROBOT_FILE = "must be the URDF or SRDF file of a robot"
+DEEP = "XML elements are nested more than 64 deep: must be a URDF or SRDF file"
 
 
 def with_number(text: str) -> str:
@@ -465,16 +476,18 @@ REFUSED = {
     "<robot>\n<link name='a' name='b'/></robot>": "line 2: invalid XML: duplicate attribute",
     "<robot>\n": "line 2: invalid XML: no element found",
     '<?xml version="1.0" encoding="klingon"?><robot/>': "line 1: invalid XML: unknown encoding: klingon",
-    "<mujoco/>": "line 1: the root is <mujoco>: must be <robot>",
-    "<" + "m" * 5000 + "/>": f"line 1: the root is <{'m' * 40}...>: must be <robot>",
+    "<mujoco/>": "line 1: the root is <mujoco>: must be <robot>, as in a URDF or SRDF file",
+    "<" + "m" * 5000 + "/>": f"line 1: the root is <{'m' * 40}...>: must be <robot>, as in a URDF or SRDF file",
     robot('\n<xacro:include filename="x"/>'): "line 3: <xacro:include>: run xacro on the file first",
     with_number('<origin xyz="0 0 ${h}"/>'): "line 2: origin xyz = '0 0 ${h}': run xacro on the file first",
     # Names.
     robot("<link/>"): "<link> number 1 has no name",
     robot(link("a", "")): "<link> number 2 has no name",
     two_links("<joint/>"): "<joint> number 1 has no name",
-    robot(link("a", "b", "a")): "two links are named 'a'",
-    two_links(joint("a", "base", "tip"), joint("a", "base", "tip")): "two joints are named 'a'",
+    robot(link("a", "b", "a")): "two links are named 'a': names must be unique: rename one",
+    two_links(
+        joint("a", "base", "tip"), joint("a", "base", "tip")
+    ): "two joints are named 'a': names must be unique: rename one",
     robot(link("x" * 257)): f"line 2: link name = '{'x' * 40}...' has 257 characters: must have at most 256",
     # Parts of a joint.
     two_links('<joint name="a" type="fixed"><child link="tip"/></joint>'): "joint 'a' has no <parent link=\"...\">",
@@ -497,8 +510,8 @@ REFUSED = {
     with_number('<mimic joint="b" offset="?"/>'): "joint 'a': mimic offset = '?': must be 1 finite number",
     with_number('<mimic joint="b" multiplier=""/>'): "joint 'a': mimic multiplier = '': must be 1 finite number",
     # Bounds.
-    with_number(""): "joint 'a' is revolute and has no <limit> with a velocity",
-    with_number('<limit lower="0" upper="1"/>'): "joint 'a' is revolute and has no <limit> with a velocity",
+    with_number(""): f"joint 'a' is revolute: {NO_LIMIT}",
+    with_number('<limit lower="0" upper="1"/>'): f"joint 'a' is revolute: {NO_LIMIT}",
     with_number('<limit velocity="1"/>'): "joint 'a': lower = 0: must be below upper = 0",
     with_number('<limit lower="1.5" upper="-2" velocity="1"/>'): "joint 'a': lower = 1.5: must be below upper = -2",
     with_number('<limit lower="0" upper="1" velocity="0"/>'): "joint 'a': velocity = 0: must be positive",
@@ -516,49 +529,57 @@ REFUSED = {
         "joint 'a': type = None: must be revolute, continuous, prismatic or fixed"
     ),
     # The tree.
-    robot(): "links without a parent joint: none: must be one, the root",
-    robot(link("tip", "b")): "links without a parent joint: 'tip', 'b': must be one, the root",
+    robot(): NO_LINKS,
+    robot(link("tip", "b")): (
+        "links without a parent joint: 'tip', 'b': must be one, the root: connect the others by joints"
+    ),
     robot(link(*map(str, range(15)))): (
-        f"links without a parent joint: {', '.join(repr(str(i)) for i in range(12))}, 3 more: must be one, the root"
+        f"links without a parent joint: {', '.join(repr(str(i)) for i in range(12))}, 3 more: must be one, the root: "
+        "connect the others by joints"
     ),
-    two_links(joint("a", "base", "tap")): "joint 'a': child link 'tap' does not exist",
-    two_links(joint("a", "bass", "tip")): "joint 'a': parent link 'bass' does not exist",
+    two_links(joint("a", "base", "tap")): f"joint 'a': child link 'tap' {NO_LINK}",
+    two_links(joint("a", "bass", "tip")): f"joint 'a': parent link 'bass' {NO_LINK}",
     two_links(joint("a", "base", "tip"), joint("b", "base", "tip")): (
-        "link 'tip' is the child of two joints, 'a' and 'b'"
+        "link 'tip' is the child of two joints, 'a' and 'b': must be the child of one: correct <child> of one joint"
     ),
-    two_links(joint("a", "base", "tip"), joint("b", "tip", "base")): "its links form a loop: 'base', 'tip', 'base'",
-    robot(link("tip"), joint("a", "tip", "tip")): "its links form a loop: 'tip', 'tip'",
+    two_links(
+        joint("a", "base", "tip"), joint("b", "tip", "base")
+    ): f"its links form a loop: 'base', 'tip', 'base': {TREE_OF}",
+    robot(link("tip"), joint("a", "tip", "tip")): f"its links form a loop: 'tip', 'tip': {TREE_OF}",
     two_links(joint("a", "base", "tip"), link("x", "y"), joint("b", "x", "y"), joint("c", "y", "x")): (
-        "its links form a loop: 'x', 'y', 'x'"
+        f"its links form a loop: 'x', 'y', 'x': {TREE_OF}"
     ),
     # The joints between base and tip.
-    two_links(joint("a", "base", "tip", type="fixed")): (
-        "no joints move between base 'base' and tip 'tip': must be 1 to 64"
-    ),
-    robot(link("tip")): "no joints move between base 'tip' and tip 'tip': must be 1 to 64",
+    two_links(joint("a", "base", "tip", type="fixed")): (f"no joints move between base 'base' and tip 'tip': {COUNT}"),
+    robot(link("tip")): f"no joints move between base 'tip' and tip 'tip': {COUNT}",
     robot(link("0", *map(str, range(1, 65)), "tip"), *(joint(f"j{i}", str(i), str(i + 1)) for i in range(64))).replace(
         "</robot>", joint("last", "64", "tip") + "</robot>"
-    ): "65 joints move between base '0' and tip 'tip': must be 1 to 64",
+    ): f"65 joints move between base '0' and tip 'tip': {COUNT}",
     # Mimics.
-    three_links(mimic("a"), Z + LIMIT): "mimics form a loop: 'a', 'a'",
-    three_links(mimic("b"), mimic("a")): "mimics form a loop: 'a', 'b', 'a'",
-    three_links(mimic("c"), Z + LIMIT): "joint 'a' mimics 'c', which does not exist",
+    three_links(mimic("a"), Z + LIMIT): f"mimics form a loop: 'a', 'a': {DRIVE}",
+    three_links(mimic("b"), mimic("a")): f"mimics form a loop: 'a', 'b', 'a': {DRIVE}",
+    three_links(mimic("c"), Z + LIMIT): (
+        "joint 'a' mimics 'c', which does not exist: "
+        "must mimic a joint of the file: correct the name, or remove <mimic>"
+    ),
     three_links(Z + LIMIT, mimic("a", 'multiplier="0"')): (
         "joint 'b' mimics 'a' by ratio 0 and offset 0: must be finite, the ratio not zero"
     ),
     three_links(Z + LIMIT, mimic("a", 'offset="4"')): (
-        "joint 'a': the bounds of its mimic joints leave no range: lower = -1, upper = -2"
+        "joint 'a': lower = -1 by the bounds of its mimic joints: must be below upper = -2: "
+        "widen the bounds, or correct ratio and offset"
     ),
-    three_links(Z + LIMIT, mimic("a", limit="")): "joint 'b' is revolute and has no <limit> with a velocity",
+    three_links(Z + LIMIT, mimic("a", limit="")): f"joint 'b' is revolute: {NO_LIMIT}",
     three_links(Z + LIMIT, mimic("a")).replace("revolute", "fixed", 1): (
-        "all moving joints are held: 'b': at least one must move"
+        "all joints between base and tip mimic joints elsewhere: 'b': at least one must have a drive: "
+        "give another base or tip"
     ),
     robot(
         link("base", "tip", *(f"l{i}" for i in range(71))),
         joint("j0", "base", "tip", mimic("j1")),
         *(joint(f"j{i + 1}", "base", f"l{i}", mimic(f"j{i + 2}")) for i in range(70)),
         joint("j71", "base", "l70"),
-    ): "joint 'j0': more than 64 joints mimic one another in a row",
+    ): "joint 'j0': more than 64 joints mimic one another in a row: must be fewer: let each mimic the last leader",
 }
 
 
@@ -582,7 +603,7 @@ def test_refused(text: str, message: str, write) -> None:
             "tip 'torso' is not below base 'hand', they have 'torso' in common: "
             "base must be between the root 'root' and the tip",
         ),
-        ("hand", "hand", "no joints move between base 'hand' and tip 'hand': must be 1 to 64"),
+        ("hand", "hand", f"no joints move between base 'hand' and tip 'hand': {COUNT}"),
     ],
 )
 def test_links_with_no_chain_between(tip: str, base: str, message: str, write) -> None:
@@ -655,16 +676,19 @@ HOSTILE = {
     "DTD from outside": (lambda: '\n<!DOCTYPE robot SYSTEM "http://localhost:9/x.dtd"><robot/>', DOCTYPE),
     "parameter entity": (lambda: '\n<!DOCTYPE r [<!ENTITY % e SYSTEM "http://localhost:9/x">%e;]><robot/>', DOCTYPE),
     "entity without DTD": (lambda: "<robot>&e;</robot>", "line 1: invalid XML: undefined entity"),
-    "deep": (lambda: "<robot>" + "<a>" * 4_000_000, "line 1: XML elements are nested more than 64 deep"),
+    "deep": (lambda: "<robot>" + "<a>" * 4_000_000, f"line 1: {DEEP}"),
     "long tag round many": (
         lambda: "<robot><" + "x" * 15_000_000 + ">" + "<a/>" * 60_000,
-        "line 1: has more than 50000 XML elements",
+        f"line 1: has more than 50000 XML elements: {ROBOT_FILE}",
     ),
-    "65 deep": (lambda: robot("<a>" * 64 + "</a>" * 64), "line 2: XML elements are nested more than 64 deep"),
-    "many elements": (lambda: "<robot>" + "<a/>" * 4_000_000, "line 1: has more than 50000 XML elements"),
+    "65 deep": (lambda: robot("<a>" * 64 + "</a>" * 64), f"line 2: {DEEP}"),
+    "many elements": (
+        lambda: "<robot>" + "<a/>" * 4_000_000,
+        f"line 1: has more than 50000 XML elements: {ROBOT_FILE}",
+    ),
     "many attributes": (
         lambda: "<robot {}/>".format(" ".join(f"a{i}='0'" for i in range(1_000_000))),
-        "links without a parent joint: none: must be one, the root",
+        NO_LINKS,
     ),
     "long name": (
         lambda: robot(link("x" * 16_000_000)),
@@ -674,7 +698,7 @@ HOSTILE = {
         lambda: with_number(f'<origin xyz="{"1" * 10_000_000}"/>'),
         f"line 2: origin xyz = '{'1' * 40}...' has 10000000 characters: must have at most 256",
     ),
-    "long text": (lambda: robot(" " * 16_000_000), "links without a parent joint: none: must be one, the root"),
+    "long text": (lambda: robot(" " * 16_000_000), NO_LINKS),
     "zeros": (lambda: b"\0" * 1_000_000, "line 1: invalid XML: not well-formed (invalid token)"),
     "noise": (
         lambda: np.random.default_rng(0).bytes(1_000_000),
@@ -693,12 +717,12 @@ def test_gigantic_file(tmp_path: Path) -> None:
     file = tmp_path / "big.urdf"
     with open(file, "wb") as out:
         out.truncate(1 << 40)  # A hole, which takes no disk space.
-    assert refusal(file) == "has more than 16 MiB"
+    assert refusal(file) == f"has more than 16 MiB: {ROBOT_FILE}"
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/zero"), reason="no /dev/zero")
 def test_endless_file() -> None:
-    assert refusal(Path("/dev/zero")) == "has more than 16 MiB"
+    assert refusal(Path("/dev/zero")) == f"has more than 16 MiB: {ROBOT_FILE}"
 
 
 def test_64_deep_is_read(write) -> None:
@@ -775,7 +799,7 @@ def test_ur5() -> None:
 
 
 # Sensors that nothing moves, grippers' fingers, wheels and joints locked by their bounds.
-KNOWN_REASONS = ("must be 1 to 64", "all moving joints are held", "must be positive", "must be below")
+KNOWN_REASONS = ("must be 1 to 64", "must have a drive", "must be positive", "must be below")
 
 
 @with_robots

@@ -606,7 +606,7 @@ def test_a_urdf_that_is_not_the_arms(file, tmp_path):
             "has no joint 'panda_joint1' of the arm; joints of the file: a, b, c, d, grip",
         ),
         (arm, longer, "must be of this arm: joint 'd' is displaced by 0.1 m from this arm's joint"),
-        (arm, broken, "yourdfpy cannot read it"),
+        (arm, broken, "must be a file that yourdfpy can read"),
     ):
         path = fp.Line([0.01, 0] if isinstance(bad, fp.PlanarArm) else [0.01, 0, 0], 1.0)
         q0 = np.linspace(0.3, 0.6, bad.dof)

@@ -62,7 +62,7 @@ def track(request: Request, out: Path | None, dark: bool, also: tuple[str, ...])
             files[name] = writers.get(kind, lambda file: animate(run, file, dark=dark))
         write_files(out, {**files, "run.npz": run.save, "job.toml": motion.save})
     if not run.status:
-        raise click.ClickException("the motion is not complete")
+        raise click.ClickException("the motion is not complete: the status above has the cause and a remedy")
 
 
 @motion_command(
@@ -108,7 +108,7 @@ def compare(request: Request, schemes: str | None, out: Path | None, dark: bool)
         saved: dict[str, Writer] = {f"{kind}.npz": run.save for kind, run in runs.items()}
         write_files(out, {"compare.png": picture(figure(runs, dark=dark)), **saved, "job.toml": chosen.save})
     if not any(run.status for run in runs.values()):
-        raise click.ClickException("no motion is complete")
+        raise click.ClickException("no motion is complete: the remarks above have the causes and remedies")
 
 
 def _row(kind: str, run: Run) -> Row:

@@ -66,7 +66,7 @@ def file_errors(doing: str, place: Path | None = None) -> Iterator[None]:
     except OSError as error:
         if error.strerror is None:
             raise click.ClickException(str(error)) from None
-        reason = "it is a file" if isinstance(error, FileExistsError) else error.strerror
+        reason = "it is a file: give a folder" if isinstance(error, FileExistsError) else error.strerror
         where = place or error.filename2 or error.filename
         raise click.ClickException(f"cannot {doing} {where}: {reason}") from None
 

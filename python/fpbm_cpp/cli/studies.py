@@ -75,7 +75,7 @@ def sweep(
         raise
     show(done)
     if not done.ok.any():
-        raise click.ClickException("no motion is complete")
+        raise click.ClickException("no motion is complete: the remarks above have the causes and remedies")
 
 
 def _values(vary: str) -> list[float]:

@@ -130,7 +130,7 @@ def reproduce(out: Path) -> None:
         click.echo("\n" + click.wrap_text(line, width=WIDTH))
     click.echo(f"\n{len(done.files)} files in {out}{os.sep}, {time.perf_counter() - start:.0f} s")
     if not done.agrees:
-        raise click.ClickException("a motion differs from the independent solution by more than 1e-9")
+        raise click.ClickException("a motion differs from the independent solution by more than 1e-9: see report.md")
 
 
 @tool("Write an arm or a robot as a C++ header.", "export-header my_arm.urdf --tip tool -o my_arm.hpp")

@@ -70,7 +70,8 @@ def capsules_of(
     joints, places = _joints(path, tip, base, locked, tips)
     shapes = read_shapes(path)
     if not shapes:
-        raise ValueError(f"{os.fsdecode(path)}: has no <collision> geometry")
+        remedy = "must be on at least one link: add it, or give capsules to Clearance()"
+        raise ValueError(f"{os.fsdecode(path)}: has no <collision> geometry: {remedy}")
     names = sorted(shapes, key=lambda link: places[link][0])
     links = []
     fitted: dict[bytes, list[Part]] = {}  # Equal arms have equal shapes.

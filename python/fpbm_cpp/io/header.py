@@ -119,7 +119,7 @@ def _drives(joints: Sequence[Joint], name: str, scalar: str) -> int:
     if scalar not in SCALARS:
         raise not_one_of("scalar", scalar, SCALARS)
     if not all(_is_identifier(part) for part in name.split("::")):
-        raise wrong("name", name, f" = {name!r}: must be a C++ identifier that is not taken")
+        raise wrong("name", name, f" = {name!r}: must be a C++ identifier, not a keyword, Eigen, fpbm or std")
     return sum(joint.mimic is None for joint in joints)
 
 

@@ -38,11 +38,11 @@ def read_mesh(file: Path) -> Array:
     trimesh = extra("trimesh", "a mesh's capsule", "clearance")
     kind = file.suffix.lower().removeprefix(".")
     if kind not in TYPES:
-        raise ValueError(f"mesh {str(file)!r}: must be one of {', '.join(TYPES)}")
+        raise ValueError(f"mesh {str(file)!r}: must be one of {', '.join(TYPES)}: convert the mesh")
     if kind == "dae":
         extra("collada", "a DAE mesh's capsule", "clearance")
     if file.stat().st_size > MAX_BYTES:
-        raise ValueError(f"mesh {str(file)!r}: has more than {MAX_BYTES >> 20} MiB")
+        raise ValueError(f"mesh {str(file)!r}: has more than {MAX_BYTES >> 20} MiB: must be smaller: simplify the mesh")
     try:
         with open(file, "rb") as opened:
             scene = trimesh.load_scene(opened, file_type=kind, process=False)
@@ -51,9 +51,10 @@ def read_mesh(file: Path) -> Array:
         if scene.units not in (None, "meters"):
             vertices *= trimesh.units.unit_conversion(scene.units, "meters")
     except Exception as error:
-        raise ValueError(f"mesh {str(file)!r}: trimesh cannot read it: {error}") from None
+        raise ValueError(f"mesh {str(file)!r}: must be a {kind} file that trimesh can read: {error}") from None
     if not len(faces) or not np.all(np.isfinite(vertices)):
-        raise ValueError(f"mesh {str(file)!r}: {'its vertices are not finite' if len(faces) else 'has no triangles'}")
+        problem = "its vertices are not finite" if len(faces) else "has no triangles"
+        raise ValueError(f"mesh {str(file)!r}: {problem}: must have triangles of finite vertices: export it again")
     pairs = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     edges: Array = vertices[np.unique(pairs, axis=0)]
     return edges

@@ -20,7 +20,7 @@ from .tables import quaternions
 def to_rosbag(run: Run, directory: str | os.PathLike[str], frame: str, trajectory: bool) -> None:
     rosbag2, typesys = (extra(f"rosbags.{part}", "to_rosbag", "ros") for part in ("rosbag2", "typesys"))
     if not len(run.t):
-        raise ValueError("the run has no samples: must have at least one sample")
+        raise ValueError("run: has no samples: must have at least one: run.status has the cause")
     target = Path(directory)
     if target.exists() or target.is_symlink():
         raise FileExistsError(f"{target}: exists already: give a new directory, a bag does not replace files")

@@ -63,7 +63,7 @@ def load(file: str | os.PathLike[str]) -> Run:
     try:
         return _run(meta, arrays)
     except Exception as error:
-        raise ValueError(f"{file}: is not a valid run: {error}") from error
+        raise ValueError(f"{file}: must be a valid run from Run.save(): {error}") from error
 
 
 def _provenance(run: Run, note: Any, seed: Any) -> dict[str, Any]:

@@ -24,7 +24,7 @@ def read_disabled_pairs(path: str | os.PathLike[str]) -> list[tuple[str, str]]:
             one, other = (link or "" for link in links)
             if not one or not other or one == other:
                 raise ValueError(
-                    f"line {element.line}: <disable_collisions> of {one!r} and {other!r}: must be two links"
+                    f"line {element.line}: <disable_collisions> of {one!r} and {other!r}: must be two different links"
                 )
             pairs.add((min(one, other), max(one, other)))
     except ValueError as error:

@@ -61,18 +61,22 @@ def tree_of(links: Iterable[str], joints: Iterable[UrdfJoint]) -> Tree:
     for joint in joints:
         for role, link in (("parent", joint.parent), ("child", joint.child)):
             if link not in above:
-                raise ValueError(f"joint {joint.name!r}: {role} link {link!r} does not exist")
+                problem = "does not exist: must be a <link> of the file: add the link, or correct the name"
+                raise ValueError(f"joint {joint.name!r}: {role} link {link!r} {problem}")
         other = above[joint.child]
         if other is not None:
-            raise ValueError(f"link {joint.child!r} is the child of two joints, {other.name!r} and {joint.name!r}")
+            twice = f"is the child of two joints, {other.name!r} and {joint.name!r}"
+            raise ValueError(f"link {joint.child!r} {twice}: must be the child of one: correct <child> of one joint")
         above[joint.child] = joint
     try:
         TopologicalSorter({link: (joint.parent,) for link, joint in above.items() if joint}).prepare()
     except CycleError as error:
-        raise ValueError(f"its links form a loop: {listed(error.args[1])}") from None
+        remedy = "must form a tree: remove a joint of the loop"
+        raise ValueError(f"its links form a loop: {listed(error.args[1])}: {remedy}") from None
     roots = [link for link, joint in above.items() if joint is None]
     if len(roots) != 1:
-        raise ValueError(f"links without a parent joint: {listed(roots)}: must be one, the root")
+        remedy = "connect the others by joints" if roots else "add the links of the robot"
+        raise ValueError(f"links without a parent joint: {listed(roots)}: must be one, the root: {remedy}")
     return above
 
 
@@ -96,7 +100,8 @@ def _way(above: Tree, tip: str, base: str | None) -> list[UrdfJoint]:
     way = up[: links.index(base)][::-1]
     count = _moving(way)
     if not 1 <= count <= MAX_DOF:
-        raise ValueError(f"{count or 'no'} joints move between base {base!r} and tip {tip!r}: must be 1 to {MAX_DOF}")
+        demand = f"must be 1 to {MAX_DOF}: give another base or tip"
+        raise ValueError(f"{count or 'no'} joints move between base {base!r} and tip {tip!r}: {demand}")
     return way
 
 
@@ -136,11 +141,14 @@ def follows_of(way: Iterable[UrdfJoint], mimics: Mapping[str, Follow | None]) ->
             leader, multiplier, plus = mimic
             ratio, offset = ratio * multiplier, offset + ratio * plus
             if leader not in mimics:
-                raise ValueError(f"joint {passed[-1]!r} mimics {leader!r}, which does not exist")
+                remedy = "must mimic a joint of the file: correct the name, or remove <mimic>"
+                raise ValueError(f"joint {passed[-1]!r} mimics {leader!r}, which does not exist: {remedy}")
             if leader in passed:
-                raise ValueError(f"mimics form a loop: {listed([*passed[passed.index(leader) :], leader])}")
+                loop = listed([*passed[passed.index(leader) :], leader])
+                raise ValueError(f"mimics form a loop: {loop}: one joint must have a drive: remove its <mimic>")
             if len(passed) > MAX_DOF:
-                raise ValueError(f"joint {joint.name!r}: more than {MAX_DOF} joints mimic one another in a row")
+                row = f"more than {MAX_DOF} joints mimic one another in a row"
+                raise ValueError(f"joint {joint.name!r}: {row}: must be fewer: let each mimic the last leader")
         if not (0.0 < abs(ratio) < inf and abs(offset) < 1e100):
             by = f"ratio {ratio:g} and offset {offset:g}"
             raise ValueError(f"joint {joint.name!r} mimics {leader!r} by {by}: must be finite, the ratio not zero")
@@ -169,7 +177,9 @@ def _chain(way: list[UrdfJoint], follows: Mapping[str, Follow]) -> tuple[list[Jo
                 frame = frame @ step_of(joint, offset)
         places[joint.child] = (len(joints), frame)
     if not joints:
-        raise ValueError(f"all moving joints are held: {listed(joint.name for joint in held)}: at least one must move")
+        names = listed(joint.name for joint in held)
+        problem = f"all joints between base and tip mimic joints elsewhere: {names}"
+        raise ValueError(f"{problem}: at least one must have a drive: give another base or tip")
     return joints, places, held
 
 
@@ -221,7 +231,7 @@ def chain_joint(joint: UrdfJoint, placement: Array) -> Joint:
     if joint.type == "continuous":
         limit = {"velocity": inf, **limit, "lower": -inf, "upper": inf}
     if "velocity" not in limit:
-        raise ValueError(f"joint {joint.name!r} is {joint.type} and has no <limit> with a velocity")
+        raise ValueError(f'joint {joint.name!r} is {joint.type}: must have <limit velocity="...">')
     lower, upper = limit["lower"], limit["upper"]
     if lower >= upper:
         raise ValueError(f"joint {joint.name!r}: lower = {lower:g}: must be below upper = {upper:g}")
@@ -238,8 +248,8 @@ def _envelope(joint: UrdfJoint) -> dict[str, float]:
         return {}
     offset, deceleration = (joint.envelope.get(name) for name in ENVELOPE)
     if offset is None or deceleration is None or offset < 0.0 or deceleration <= 0.0:
-        needs = f"must have {' and '.join(ENVELOPE)}, not negative"
-        raise ValueError(f"joint {joint.name!r}: <position_based_velocity_limits> {needs}")
+        needs = "must have velocity_offset, not negative, and deceleration_limit, positive"
+        raise ValueError(f"joint {joint.name!r}: <position_based_velocity_limits>: {needs}")
     return {"velocity_offset": offset, "deceleration": deceleration}
 
 
@@ -256,8 +266,8 @@ def coupled_joints(joints: list[Joint], follows: Mapping[str, Follow]) -> list[J
         ends = sorted(((follower.lower - offset) / ratio, (follower.upper - offset) / ratio))
         lower, upper = max(leader.lower, ends[0]), min(leader.upper, ends[1])
         if lower >= upper:
-            room = f"lower = {lower:g}, upper = {upper:g}"
-            raise ValueError(f"joint {name!r}: the bounds of its mimic joints leave no range: {room}")
+            problem = f"lower = {lower:g} by the bounds of its mimic joints: must be below upper = {upper:g}"
+            raise ValueError(f"joint {name!r}: {problem}: widen the bounds, or correct ratio and offset")
         coupled[index[name]] = replace(
             leader,
             type="revolute" if leader.type == "continuous" and upper < inf else leader.type,

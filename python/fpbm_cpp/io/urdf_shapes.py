@@ -180,7 +180,8 @@ def _mesh(element: Element, owner: str, urdf: Path, meshes: dict[str, Array]) ->
     if name not in meshes:
         file = find_mesh(urdf, name)
         if file is None:
-            raise ValueError(f"{owner}: mesh {name!r} is not found")
+            where = "must be below a folder above the URDF file or in ROS_PACKAGE_PATH: set ROS_PACKAGE_PATH"
+            raise ValueError(f"{owner}: mesh {name!r} is not found: {where}")
         meshes[name] = read_mesh(file)
     scale = Element("geometry", element.line, {}, [element]).numbers("mesh", "scale", [1.0] * 3, owner)
     return Shape(meshes[name] * scale)

@@ -65,7 +65,7 @@ def read_xml(path: str | os.PathLike[str], kept: Kept) -> Element:
     with open(path, "rb") as file:
         xml = file.read(MAX_BYTES + 1)
     if len(xml) > MAX_BYTES:
-        raise ValueError(f"has more than {MAX_BYTES >> 20} MiB")
+        raise ValueError(f"has more than {MAX_BYTES >> 20} MiB: must be the URDF or SRDF file of a robot")
     parser = expat.ParserCreate()
     opened: list[Element] = []
     root = Element("robot", 1, {})
@@ -78,10 +78,15 @@ def read_xml(path: str | os.PathLike[str], kept: Kept) -> Element:
     def start(tag: str, attributes: dict[str, str]) -> None:
         nonlocal count
         count += 1
-        require(count <= MAX_ELEMENTS, f"has more than {MAX_ELEMENTS} XML elements")
-        require(len(opened) < MAX_DEPTH, f"XML elements are nested more than {MAX_DEPTH} deep")
+        require(
+            count <= MAX_ELEMENTS,
+            f"has more than {MAX_ELEMENTS} XML elements: must be the URDF or SRDF file of a robot",
+        )
+        require(
+            len(opened) < MAX_DEPTH, f"XML elements are nested more than {MAX_DEPTH} deep: must be a URDF or SRDF file"
+        )
         require(not tag.startswith("xacro:"), f"<{cut(tag)}>: run xacro on the file first")
-        require(opened or tag == "robot", f"the root is <{cut(tag)}>: must be <robot>")
+        require(opened or tag == "robot", f"the root is <{cut(tag)}>: must be <robot>, as in a URDF or SRDF file")
         here = kept.get(tuple(element.tag for element in opened), {})
         own = {key: attributes[key] for key in here.get(tag, ()) if key in attributes}
         for key, text in own.items():
@@ -117,6 +122,6 @@ def named(elements: Iterable[Element]) -> dict[str, Element]:
         if not name:
             raise ValueError(f"<{element.tag}> number {i} has no name")
         if name in found:
-            raise ValueError(f"two {element.tag}s are named {name!r}")
+            raise ValueError(f"two {element.tag}s are named {name!r}: names must be unique: rename one")
         found[name] = element
     return found

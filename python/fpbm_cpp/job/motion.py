@@ -177,7 +177,8 @@ def filled(job: Table, arm: Arm | Robot) -> Table:
     run = _filled("run", job.get("run", {}))
     stack = make("task", job["task"]) if "task" in job else None
     if stack is None and isinstance(arm, Robot):
-        raise JobError(wrong("task", None, ": is missing: a robot needs [[task]] tables"))
+        missing = ": is missing: a robot needs [[task]] tables, or --task FRAME on the command line"
+        raise JobError(wrong("task", None, missing))
     if stack is None and run["task"] not in TIP_TASKS:
         raise JobError(not_one_of("run.task", run["task"], TIP_TASKS))
     with job_errors():

@@ -247,7 +247,8 @@ class Run:
         from .simulation import simulate, track
 
         if "dt" not in self.options:
-            raise ValueError(f"options = {self.options}: must hold the arguments that the run was made with")
+            demand = "must have the arguments of simulate() or track(): make the run with one of these functions"
+            raise ValueError(f"options = {self.options}: {demand}")
         q0 = self.q[0] if len(self.q) else self.status.q
         if "error_bound" in self.options:
             return track(self.arm, self.path, self.scheme, q0, task=self.task, **self.options)

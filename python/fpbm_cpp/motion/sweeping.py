@@ -170,13 +170,14 @@ def sweep(
     if workers is not None and executor is not None:
         raise wrong("workers", workers, ": must not be given with an executor, which has its own workers")
     if workers is not None and workers < 1:
-        raise wrong("workers", workers, f" = {workers}: must be 1 at least")
+        raise wrong("workers", workers, f" = {workers}: must be at least 1")
     name, kind = path_task(task, stack)
     limited = LimitOptions(
         limits, error_bound, integral_gain, integral_bound, stall_time, singular_radius, singular_brake, null_damping
     )
     if limits is None and limited != LimitOptions():
-        raise wrong("limits", None, ": must be given with an option that needs limits")
+        given = [name for name, value in limited._asdict().items() if value != LimitOptions._field_defaults[name]]
+        raise wrong("limits", None, f": must be given with {', '.join(given)}: give arm.limits or other limits")
     kept = None if limits is None else limited._replace(stack=stack, task=name)
     if limits is None and stack is not None:
         kept = without_limits(arm, stack, name)

@@ -53,7 +53,7 @@ def animate(
     for name, value in (("fps", fps), ("speed", speed), ("dpi", dpi)):
         Parameter(name, float, low=0.0, open_low=True).check(value)
     if not len(run.t):
-        raise ValueError("run: has no samples to animate")
+        raise ValueError("run: has no samples: must have at least one: run.status has the cause")
     shown = {**choose(run, panels), "arm": Panel("", _draw_background)}
     times = np.append(np.arange(run.t[0], run.t[-1], speed / fps), run.t[-1])
     samples = np.searchsorted(run.t, times).clip(max=len(run.t) - 1)
@@ -112,7 +112,7 @@ def write_frames(file: Path, frames: Iterable[Frame], fps: float) -> None:
     if suffix == ".gif" and fps > FASTEST_GIF:
         raise ValueError(f"fps = {fps:g}: must be at most {FASTEST_GIF:g} in a .gif")
     if not file.parent.is_dir():
-        raise FileNotFoundError(f"file = {str(file)!r}: there is no folder {str(file.parent)!r}")
+        raise FileNotFoundError(f"file = {str(file)!r}: there is no folder {str(file.parent)!r}: make the folder first")
     ffmpeg = _ffmpeg() if suffix == ".mp4" else ""
     rest = iter(frames)
     first = next(rest)

@@ -320,5 +320,6 @@ def choose(run: Run, panels: str | Sequence[str] | None) -> dict[str, Panel]:
             raise ValueError(f"panels: {name!r} is given twice: must be given once")
     chosen = {name: PANELS[name] for name in asked if PANELS[name].fits(run)}
     if not chosen:
-        raise ValueError(f"panels: {asked}: must have data in this run")
+        able = ", ".join(name for name, panel in PANELS.items() if panel.fits(run))
+        raise ValueError(f"panels = {asked}: no data in this run: must have one of {able}")
     return chosen

@@ -58,7 +58,8 @@ def measure(objective: str | OfRun, limits: JointLimits) -> tuple[str, str, OfRu
         names = ", ".join(map(repr, OBJECTIVES))
         raise ValueError(f"objective = {objective!r}: must be one of {names}, or a function of a Run")
     if objective == "limit_distance" and not np.any(_bounded(limits)):
-        raise ValueError("objective = 'limit_distance': must have a joint with two bounds, and the arm has none")
+        demand = "must have a joint with two bounds, and the arm has none: give limits"
+        raise ValueError(f"objective = 'limit_distance': {demand}")
     return objective, *OBJECTIVES[objective]
 
 
@@ -169,9 +170,8 @@ def _why_none(tried: Trials, tolerance: float) -> str:
     text = f"none of {len(tried)} schemes is feasible: {np.sum(~complete)} stopped early or have no objective"
     if not complete.any():
         return f"{text}; simulate() with {tried.schemes[0]!r} shows the cause"
-    return (
-        f"{text}; the least error of the others is {tried.error[complete].min():.2g}, above tolerance = {tolerance:g}"
-    )
+    least = f"the least error of the others is {tried.error[complete].min():.2g}, above tolerance = {tolerance:g}"
+    return f"{text}; {least}: give a larger tolerance, or a smaller dt"
 
 
 def trials_of(sweep: Sweep, objective: str, of_run: OfRun | None, tolerance: float) -> Trials:

@@ -48,8 +48,8 @@ class Obstacles:
         Raises ParameterError if no obstacle has that name.
         """
         if name not in self._given:
-            names = ", ".join(self._given)
-            raise wrong("name", name, f" = {name!r}: must be one of the obstacles{names and ': '}{names}")
+            names = ", ".join(self._given) or "none"
+            raise wrong("name", name, f" = {name!r}: must be one of the obstacles: {names}")
         self._goals[name] = np.array(way, dtype=float)
 
     def step(self, tracker: Tracker) -> None:

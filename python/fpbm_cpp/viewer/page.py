@@ -65,9 +65,9 @@ def _require_free(host: str, port: int) -> None:
         try:
             probe.bind((host, port))
         except socket.gaierror as error:
-            raise ValueError(f"host = {host!r}: {error.strerror}") from None
+            raise ValueError(f"host = {host!r}: must be an address of this machine: {error.strerror}") from None
         except OSError as error:
-            text = f"cannot serve at {host}, port {port}: {error.strerror}"
+            text = f"cannot serve at {host}, port {port}: {error.strerror}: choose another host or port"
             if error.errno == errno.EADDRINUSE:
                 text = f"port {port} is in use: choose another port, or 0 for a free port"
             raise OSError(error.errno, text) from None

@@ -97,13 +97,13 @@ class Meshes:
                 warnings.simplefilter("ignore")
                 robot = yourdfpy.URDF.load(str(self.file), filename_handler=partial(self._find, missing=missing))
         except Exception as error:
-            raise self._error(f"yourdfpy cannot read it: {error}") from None
+            raise self._error(f"must be a file that yourdfpy can read: {error}") from None
         finally:
             log.setLevel(level)
         if missing:
             count = len(set(missing))
             which = "1 mesh is not found:" if count == 1 else f"{count} meshes are not found, the first is"
-            warnings.warn(f"{self.file}: {which} {missing[0]}", stacklevel=4)
+            warnings.warn(f"{self.file}: {which} {missing[0]}: add the package to ROS_PACKAGE_PATH", stacklevel=4)
         return robot
 
     def _find(self, fname: str, missing: list[str]) -> str:

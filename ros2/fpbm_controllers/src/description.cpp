@@ -65,8 +65,9 @@ namespace {
   const auto leader = std::find_if(tree.joints.begin(), tree.joints.end(),
                                    [&](const auto& other) { return other.joint.name == joint.mimic->joint_name; });
   if (leader == tree.joints.end()) {
-    throw std::invalid_argument("joint '" + joint.name + "': it follows joint '" + joint.mimic->joint_name +
-                                "', which must also be between base_frame and a frame");
+    throw std::invalid_argument(
+        "joint '" + joint.name + "': it follows joint '" + joint.mimic->joint_name +
+        "', which must also be between base_frame and a frame: give another base_frame or frame");
   }
   return {static_cast<int>(leader - tree.joints.begin()), joint.mimic->multiplier, joint.mimic->offset};
 }

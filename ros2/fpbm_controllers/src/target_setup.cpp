@@ -15,7 +15,7 @@ namespace {
   for (const auto& arm : fpbm::presets::kAll) {
     if (name == arm.name) return arm.chain();
   }
-  throw std::invalid_argument("arm: there is no " + name);
+  throw std::invalid_argument("arm: is '" + name + "': must be a preset: correct the name");
 }
 
 /// Roll, pitch and yaw about the fixed axes x, y and z, as in a URDF.
@@ -32,8 +32,8 @@ namespace {
                                                      Eigen::Index dof) {
   const Eigen::Map<const Eigen::VectorXd> vector(values.data(), static_cast<Eigen::Index>(values.size()));
   if (vector.size() != dof || !vector.allFinite()) {
-    throw std::invalid_argument(std::string(name) + ": must be " + std::to_string(dof) +
-                                " numbers, one for each joint");
+    throw std::invalid_argument(std::string(name) + ": has " + std::to_string(values.size()) + " entries: must be " +
+                                std::to_string(dof) + " finite numbers, one for each joint");
   }
   return vector;
 }
@@ -71,7 +71,9 @@ void TargetController::read_parameters() {
                                                     {"diagnostics_rate", params_.diagnostics_rate},
                                                     {"target.timeout", target.timeout}};
   for (const auto& [name, value] : numbers) {
-    if (!std::isfinite(value)) throw std::invalid_argument(std::string(name) + ": must be finite");
+    if (!std::isfinite(value)) {
+      throw std::invalid_argument(std::string(name) + ": is " + std::to_string(value) + ": must be finite");
+    }
   }
   if (params_.command_interfaces.empty() || params_.command_interfaces[0] != "position" ||
       params_.state_interfaces.empty() || params_.state_interfaces[0] != "position") {

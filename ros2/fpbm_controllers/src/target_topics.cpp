@@ -103,7 +103,7 @@ std::shared_ptr<rclcpp::Subscription<Message>> TargetTopics::listen(rclcpp_lifec
         std::optional<Target> target = target_of(message);
         if (!target) {
           RCLCPP_WARN_THROTTLE(logger, *clock, 1000,
-                               "target%s dropped: a number is not finite, or the quaternion's length is not 1",
+                               "target%s dropped: all numbers must be finite, and the quaternion's length 1",
                                of.c_str());
           return;
         }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <string>
 #include <type_traits>
 
 #include "fpbm/any/any_path.hpp"
@@ -20,9 +19,14 @@ template <typename To, typename From>
   if constexpr (std::is_same_v<To, From>) {
     return path;
   } else if constexpr (std::is_same_v<From, PlanarPose> || std::is_same_v<From, Pose>) {
-    constexpr bool kPoseWillDo = kFlat == std::is_same_v<From, PlanarPose>;
-    validation::reject(
-        "path", std::string(": rotates the tip, which needs ") + (kPoseWillDo ? "task='pose'" : "another kind of arm"));
+    if constexpr (kFlat == std::is_same_v<From, PlanarPose>) {
+      validation::reject("path", ": rotates the tip, which needs task='pose'");
+    } else if constexpr (kFlat) {
+      validation::reject("path", ": is in space, and the arm is planar: must be a planar path");
+    } else {
+      validation::reject("path",
+                         ": rotates the tip in a plane, and the task is in space: call in_plane before with_rotation");
+    }
   } else if constexpr (kFlat && std::is_same_v<From, Position<3>>) {
     validation::reject("path", ": is in space, and the arm is planar: must be a planar path");
   } else if constexpr (std::is_same_v<To, Position<3>>) {

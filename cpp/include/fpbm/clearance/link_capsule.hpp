@@ -17,7 +17,7 @@ struct LinkCapsule {
 
   /// Throws std::invalid_argument if a number is out of range, or the link does not exist.
   void require_sound(const validation::Argument& argument, Eigen::Index links) const {
-    if (link < 0 || link > links) validation::fail(argument + ".link", link, "a link of the arm");
+    if (link < 0 || link > links) validation::fail(argument + ".link", link, "a link of the arm, from 0 to ", links);
     validation::require_finite(argument + ".a", capsule.a);
     validation::require_finite(argument + ".b", capsule.b);
     validation::require_non_negative(argument + ".radius", capsule.radius);

@@ -73,9 +73,9 @@ class Limits {
       const Scalar q = std::clamp(state.q(i), bounds_.lower(i), bounds_.upper(i));
       const Scalar slack = round_off(i, q);
       if (!(std::abs(state.q(i) - q) <= slack)) {
-        validation::fail(validation::element("q0", i), state.q(i),
-                         std::isfinite(bounds_.deceleration(i)) ? "where the bound on the joint's velocity is positive"
-                                                                : "within the joint's range");
+        validation::fail(validation::element("q0", i), state.q(i), "within the joint's range, from ", bounds_.lower(i),
+                         " to ", bounds_.upper(i),
+                         std::isfinite(bounds_.deceleration(i)) ? ", where the bound on velocity is positive" : "");
       }
       const Scalar qd = state.qd(i);
       const Scalar rounding =
@@ -83,7 +83,8 @@ class Limits {
       const Scalar margin = slack / tick_ + rounding;
       const Scalar slower = qd - std::clamp(qd, -margin, margin);
       if (!(std::abs(last(i)) <= bounds_.acceleration(i) + margin / tick_)) {
-        validation::fail(validation::element("qdd0", i), last(i), "within the joint's bound");
+        validation::fail(validation::element("qdd0", i), last(i), "within the joint's bound of ",
+                         bounds_.acceleration(i));
       }
       // `last` is a difference of velocities over a tick, with the error of a velocity divided by h.
       const AxisState<Scalar> error{slack, rounding, rounding / tick_};

@@ -80,8 +80,8 @@ class RowSpace {
   // Remainders with a smaller square count as zero, since the square may underflow and have no finite inverse.
   static constexpr Scalar kLeast = std::numeric_limits<Scalar>::min() / std::numeric_limits<Scalar>::epsilon();
   /// Squared length of a remainder that counts as round-off error, if the longest row has the length 1. Remainders of
-  /// dependent rows of 32 random entries have lengths of up to 8 ε. With 64 ε in place of 32 ε, small rows are ignored,
-  /// and the residual exceeds the bound of 45 ε of NullBasisOf.is_so_while_a_row_fades.
+  /// dependent rows of 32 random entries have lengths of up to 8 ε. With 64 ε instead of 32 ε, small rows are ignored,
+  /// and the residual exceeds the bound of 45 ε of NullBasisOf.is_orthonormal_while_a_row_fades.
   static constexpr Scalar kRoundOff =
       Scalar(1024) * std::numeric_limits<Scalar>::epsilon() * std::numeric_limits<Scalar>::epsilon();
 

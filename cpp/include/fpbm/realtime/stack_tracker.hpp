@@ -17,7 +17,7 @@ template <typename Scheme, typename... Levels, typename Scalar>
 void require_stack_gains(const Scheme& scheme, const Stack<Levels...>& stack, const TickOfGains<Scalar>& tick) {
   constexpr Level kLevel = Scheme::kLevel;
   const auto require_none = [](const char* name, const auto& gain) {
-    if (gain != 0) validation::fail(name, gain, "0: the tasks of a stack have gains");
+    if (gain != 0) validation::fail(name, gain, "0: give gains to the tasks of the stack");
   };
   if constexpr (kHasGains<Scheme>) {
     require_none("k1", scheme.k1);

@@ -68,7 +68,7 @@ class Tracker {
     scheme.require_dof(arm.dof());
     validation::require_size("limits", limits.bounds().lower.size(), arm.dof());
     if (limits.tick() != options.dt) {
-      validation::fail("limits' tick", limits.tick(), "the tracker's dt");
+      validation::fail("limits' tick", limits.tick(), "the tracker's dt = ", options.dt);
     }
     validation::require_joint_vector("q0", start.q, arm.dof());
     validation::require_joint_vector("qd0", start.qd, arm.dof());

@@ -63,7 +63,7 @@ RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Pat
   static_assert(std::is_same_v<typename Path::Scalar, Time>, "the path and the arm have one Scalar");
 
   if (grid.duration() != path.duration()) {
-    validation::fail("grid duration", grid.duration(), "the duration of the path");
+    validation::fail("grid duration", grid.duration(), "the duration of the path = ", path.duration());
   }
   scheme.require_dof(arm.dof());
   validation::require_joint_vector("q0", start.q, arm.dof());

@@ -58,8 +58,10 @@ class Waypoints {
     const Scalar duration = LeastDuration<Space, kCoordinates, Scalar>(unit.spline_, bounds).of([&unit](Scalar t) {
       return unit.sample(t);
     });
-    if (!(duration > Scalar(0))) validation::reject("bounds", ": at least one must limit the tip");
-    return lasting(points, std::ceil(Scalar(100.5) * duration) / Scalar(100));  // 100.5 = 100 LeastDuration::kSlack.
+    if (!(duration > Scalar(0))) {
+      validation::reject("bounds", ": at least one must limit the tip: give a bound on velocity or acceleration");
+    }
+    return lasting(points, std::ceil(Scalar(100.5) * duration) / Scalar(100));
   }
 
   [[nodiscard]] Scalar duration() const noexcept { return spline_.times().back(); }

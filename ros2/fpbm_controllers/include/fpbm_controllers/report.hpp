@@ -78,7 +78,8 @@ struct Report {
     for (std::size_t k = tasks.size(); well && k-- > 0;) {
       if (report.tasks[k].refused <= before.tasks[k].refused) continue;
       message.level = Message::WARN;
-      message.message = "targets" + of_task(tasks[k]) + " are rejected: their stamps are not newer than earlier stamps";
+      message.message = "targets" + of_task(tasks[k]) +
+                        " are rejected: their stamps are not newer than earlier stamps. Check the sender's clock.";
     }
   }
   const auto add = [&message](const std::string& key, const std::string& value) {
