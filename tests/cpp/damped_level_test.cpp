@@ -244,6 +244,29 @@ TEST(DampedLevels, of_a_posture_do_not_depend_on_the_order_of_rows) {
   }
 }
 
+/// Levels with dependent rows, whose L has fewer columns than rows, in float as in double.
+TEST(DampedLevels, in_float_damp_dependent_rows) {
+  Random random(31);
+  int damped = 0;
+  for (int k = 0; k < trials(2000); ++k) {
+    const int columns = 1 + k % 2;
+    Matrix<3, 3> L = Matrix<3, 3>::Zero();
+    for (int j = 0; j < columns; ++j) {
+      for (int i = j; i < 3; ++i) L(i, j) = random.uniform(-1.0, 1.0) * std::pow(10.0, -random.uniform(0.0, 2.0) * j);
+    }
+    const Vector<3> r = random.uniform(3, -1.0, 1.0);
+    Vector<3> w = r;
+    Vector<3, float> w_float = r.cast<float>();
+    const bool expected = fpbm::DampedLevel<3, double>(0.01)(L, w, columns);
+    const Matrix<3, 3, float> L_float = L.cast<float>();
+    ASSERT_EQ((fpbm::DampedLevel<3, float>(0.01F)(L_float, w_float, columns)), expected) << L;
+    if (!expected) continue;
+    ++damped;
+    EXPECT_LE((w_float.cast<double>() - w).norm(), 1e-3 * r.norm()) << L;
+  }
+  EXPECT_GT(damped, 100);
+}
+
 /// A row of the second level rotates through a row of the first level. The motion is continuous, even where the two
 /// rows coincide.
 TEST(DampedLevels, are_continuous_where_rows_of_two_levels_coincide) {

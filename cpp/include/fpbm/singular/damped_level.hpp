@@ -90,10 +90,10 @@ class DampedLevel {
     return gram;
   }
 
-  /// This eigenvalue, relative to tr(LᵀL) + ε². More than 1, so that the eigenvalue is above ε². Not so large that the
-  /// pivot tolerance of the Cholesky factorisation, which is relative to this eigenvalue, rejects the others. 1 to 1e12
-  /// pass `*DampedLevel*`.
-  static constexpr Scalar kApart = Scalar(1e3);
+  /// This eigenvalue, relative to tr(LᵀL) + ε². More than 1, so that the eigenvalue is above ε². The pivot tolerance of
+  /// the Cholesky factorisation, 64 ε in float, is relative to this eigenvalue: with 1e3, the factorisation rejects the
+  /// other eigenvalues (DampedLevels.in_float_damp_dependent_rows).
+  static constexpr Scalar kApart = Scalar(2);
 
   Scalar epsilon_squared_;
   Scalar lost_{0};
