@@ -149,8 +149,8 @@ TYPED_TEST(QuickestStops, find_the_largest_below_zero) {
   }
   const auto above = [](Scalar) { return Scalar(1); };
   const auto below = [](Scalar) { return Scalar(-1); };
-  EXPECT_EQ(largest_below_zero(above, Scalar(2), Scalar(3)), Scalar(2));
-  EXPECT_EQ(largest_below_zero(below, Scalar(2), Scalar(3)), Scalar(3));
+  EXPECT_EQ(largest_below_zero(above, Scalar(2), Scalar(3), 6), Scalar(2));
+  EXPECT_EQ(largest_below_zero(below, Scalar(2), Scalar(3), 6), Scalar(3));
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ struct QuickestStop {
 /// at most rounds + 2 evaluations. If the function is positive at low, returns low. Otherwise, the function is not
 /// positive at the returned x.
 template <typename Scalar, typename Function>
-[[nodiscard]] Scalar largest_below_zero(Function&& function, Scalar low, Scalar high, int rounds = 6) noexcept {
+[[nodiscard]] Scalar largest_below_zero(Function&& function, Scalar low, Scalar high, int rounds) noexcept {
   Scalar above = function(high);
   if (above <= Scalar(0)) return high;
   Scalar below = function(low);
