@@ -117,12 +117,12 @@ def summary(results: Results) -> list[str]:
     lines = ["A step in C++: kinematics and scheme.", "", *comparison(results, "step", CPLUSPLUS, steps)]
     if results.values.get("limited"):
         rows = ["panda/pose/acceleration", "panda/pose/jerk", "panda/position/acceleration"]
-        lines += ["The same with joint limits, in states with active limits.", ""]
+        lines += ["A step with joint limits, in states with active limits.", ""]
         lines += comparison(results, "limited", LIMITED, rows, kind="bounds")
     if results.values.get("python"):
         calls = ["panda/pose/fpbm", "panda/pose/mvn"]
         lines += [
-            "The same from Python, one call a step or 10,000.",
+            "A step from Python: one call for each step, or one call for 10,000 steps.",
             "",
             *comparison(results, "python", PYTHON, calls),
         ]
