@@ -175,8 +175,8 @@ template <typename Scalar>
 /// becomes 6e-17.
 template <typename Scalar>
 [[nodiscard]] Matrix<3, 3, Scalar> nearest_rotation(const Matrix<3, 3, Scalar>& R) noexcept {
-  // Largest round-off error of RᵀR [epsilon]: 8 for a product of two rotations, 13 for a product of seven. With 1.6 in
-  // place of 16, rounded rotations change, and TargetTurn.* fails.
+  // Largest round-off error of RᵀR [epsilon]: 8 for a product of two rotations, 13 for a product of seven. With 1.6,
+  // rounded rotations change, and TargetTurn.* fails.
   constexpr int kRoundOff = 16;
   const Matrix<3, 3, Scalar> excess = R.transpose().lazyProduct(R) - Matrix<3, 3, Scalar>::Identity();
   if (excess.cwiseAbs().maxCoeff() <= Scalar(kRoundOff) * std::numeric_limits<Scalar>::epsilon()) return R;
