@@ -19,9 +19,9 @@ def test_python() -> None:
     assert sorted(listed) == sorted(fp.__all__)
 
 
-def test_rooms() -> None:
-    rooms = {header.parent.name for header in INCLUDE.glob("*/*.hpp")}
-    assert {page.stem for page in (DOCS / "reference" / "cpp").glob("*.rst")} == rooms
+def test_every_header_folder_has_a_page() -> None:
+    folders = {header.parent.name for header in INCLUDE.glob("*/*.hpp")}
+    assert {page.stem for page in (DOCS / "reference" / "cpp").glob("*.rst")} == folders
 
 
 def test_extras() -> None:

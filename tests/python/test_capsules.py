@@ -117,7 +117,7 @@ def test_points_and_balls_are_inside(count: int, size: tuple[float, float, float
     ],
     ids=["point", "one point", "segment", "line", "triangle", "flat", "far"],
 )
-def test_what_has_no_volume(points: Array) -> None:
+def test_points_without_volume_have_a_capsule(points: Array) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         fit = fit_capsule(points)
@@ -128,7 +128,7 @@ def test_what_has_no_volume(points: Array) -> None:
 
 @settings(max_examples=30, deadline=None)
 @given(radius=SIZE, length=st.floats(0, 2), seed=SEED)
-def test_a_capsule_is_its_own(radius: float, length: float, seed: int) -> None:
+def test_a_capsule_has_itself_as_its_fit(radius: float, length: float, seed: int) -> None:
     ends = placed(np.array([[0, 0, 0], [0, 0, length]]), seed)
     fit = fit_capsule(ends, np.full(2, radius))
     assert volume([fit]) == pytest.approx(volume([Fit(*ends, radius)]), rel=1e-6)
@@ -162,14 +162,14 @@ CLOUDS: dict[str, Callable[[], Array]] = {
 
 
 @pytest.mark.parametrize("cloud", CLOUDS.values(), ids=CLOUDS)
-def test_no_axis_is_better(cloud: Callable[[], Array]) -> None:
+def test_no_axis_has_a_smaller_volume(cloud: Callable[[], Array]) -> None:
     points = placed(cloud(), 3)
     hull = points[ConvexHull(points).vertices]
     assert volume([fit_capsule(points)]) <= dense_search(hull) * 1.001
 
 
 @pytest.mark.parametrize("cloud", CLOUDS.values(), ids=CLOUDS)
-def test_turning_does_not_matter(cloud: Callable[[], Array]) -> None:
+def test_the_volume_does_not_depend_on_the_rotation(cloud: Callable[[], Array]) -> None:
     volumes = [volume([fit_capsule(placed(cloud(), seed))]) for seed in range(8)]
     assert max(volumes) <= min(volumes) * (1 + 1e-6)
 
@@ -250,7 +250,7 @@ def test_shapes_and_their_frames(write) -> None:
         assert c.radius == pytest.approx(own.radius, abs=1e-6)
 
 
-def test_parts_of_a_link_are_told_apart(write) -> None:
+def test_parts_of_a_link_have_separate_capsules(write) -> None:
     """Two capsules with a smaller volume: each part of an L is inside one of them, and so are the cut faces."""
     long, across = (
         geometry('box size="0.1 0.1 0.8"', '<origin xyz="0 0 0.4"/>'),
@@ -275,7 +275,7 @@ def test_parts_of_a_link_are_told_apart(write) -> None:
 
 @settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(size=st.tuples(SIZE, SIZE, SIZE), most=st.integers(1, 3), seed=SEED)
-def test_boxes_however_they_are_cut(size: tuple[float, float, float], most: int, seed: int, write) -> None:
+def test_capsules_of_a_divided_box_contain_it(size: tuple[float, float, float], most: int, seed: int, write) -> None:
     box = geometry(f'box size="{size[0]!r} {size[1]!r} {size[2]!r}"')
     found = capsules_of(write(link("base"), link("tip", box), joint("a", "base", "tip")), "tip", per_link=most)
     assert 1 <= len(found) <= most
@@ -323,7 +323,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize(("collision", "message"), REFUSED.items(), ids=range(len(REFUSED)))
-def test_refused(collision: str, message: str, write) -> None:
+def test_invalid_collision_is_rejected(collision: str, message: str, write) -> None:
     file = write(link("base"), link("tip", collision), joint("a", "base", "tip"))
     with pytest.raises(ValueError, match=re.escape(f"{file}: {message}")):
         capsules_of(file, "tip")
@@ -343,14 +343,14 @@ def test_refused(collision: str, message: str, write) -> None:
         ("part.pickle", b"", "must be one of stl, obj, dae: convert the mesh"),
     ],
 )
-def test_what_is_no_mesh(name: str, content: bytes, message: str, tmp_path: Path, write) -> None:
+def test_invalid_mesh_is_rejected(name: str, content: bytes, message: str, tmp_path: Path, write) -> None:
     (tmp_path / name).write_bytes(content)
     file = write(link("base"), link("tip", geometry(f'mesh filename="{name}"')), joint("a", "base", "tip"))
     with pytest.raises(ValueError, match=message):
         capsules_of(file, "tip")
 
 
-def test_nothing_to_contain_and_how_many(write) -> None:
+def test_empty_link_and_invalid_count_are_rejected(write) -> None:
     file = write(link("base"), link("tip"), joint("a", "base", "tip"))
     with pytest.raises(ValueError, match="has no <collision> geometry"):
         capsules_of(file, "tip")
@@ -364,7 +364,7 @@ def test_a_chain_alone_does_not_read_collisions(write) -> None:
     assert fp.SerialArm.from_urdf(file, "tip").dof == 1
 
 
-def test_missing_extra_says_so(tmp_path: Path, write) -> None:
+def test_missing_extra_is_named(tmp_path: Path, write) -> None:
     (tmp_path / "part.stl").write_bytes(trimesh.creation.box().export(file_type="stl"))
     file = write(link("base"), link("tip", geometry('mesh filename="part.stl"')), joint("a", "base", "tip"))
     program = (
@@ -459,7 +459,7 @@ with_robots = pytest.mark.skipif(ROBOTS is None or not ROBOTS.exists(), reason="
 
 @with_robots
 @pytest.mark.parametrize("mesh", ["hand", "link0", "link4", "link5", "link7"])
-def test_no_axis_is_better_for_a_mesh(mesh: str) -> None:
+def test_no_axis_has_a_smaller_volume_for_a_mesh(mesh: str) -> None:
     points = read_mesh(ROBOTS / f"panda_description/meshes/collision/{mesh}.stl").reshape(-1, 3)
     hull = points[ConvexHull(points).vertices]
     assert volume([fit_capsule(points)]) <= dense_search(hull) * 1.001

@@ -106,7 +106,7 @@ class Coal:
 
 
 @pytest.mark.parametrize("arm", [PANDA, PLANAR], ids=["panda", "planar"])
-def test_the_nearest_pair_is_that_of_coal(arm: fp.Arm) -> None:
+def test_the_nearest_pair_agrees_with_coal(arm: fp.Arm) -> None:
     rng = np.random.default_rng(3)
     capsules = CAPSULES if arm is PANDA else LINKS
     apart, worst = 0, 0.0
@@ -134,7 +134,7 @@ def test_the_nearest_pair_is_that_of_coal(arm: fp.Arm) -> None:
     assert worst <= 1e-9
 
 
-def test_links_of_a_planar_arm_lie_along_x() -> None:
+def test_links_of_a_planar_arm_are_along_x() -> None:
     rng = np.random.default_rng(5)
     for q in rng.uniform(-3, 3, (50, 3)):
         x = rng.uniform(-1, 1, 2)
@@ -157,7 +157,7 @@ def test_links_of_a_planar_arm_lie_along_x() -> None:
 # Pairs
 
 
-def test_pairs_are_all_but_neighbours_and_those_that_may_meet() -> None:
+def test_pairs_exclude_neighbours_and_allowed_pairs() -> None:
     pairs = CLEARANCE.pairs(PANDA)
     link = {each.name: each.link for each in CAPSULES}
     for i, a in enumerate(link):
@@ -177,14 +177,14 @@ def test_pairs_that_overlap_in_every_posture_are_left_out() -> None:
     assert tracker.tick(tracker.tip).nearest is None
 
 
-def test_names_are_given() -> None:
+def test_names_have_defaults() -> None:
     clearance = fp.Clearance(LINKS, [fp.HalfSpace([0, 1, 0], -1), fp.HalfSpace([1, 0, 0], -2, name="wall")])
     assert [each.name for each in clearance.capsules] == ["link_1", "link_2", "link_3"]
     assert [each.name for each in clearance.obstacles] == ["obstacle_1", "wall"]
     assert clearance.obstacles[0].offset == -1
 
 
-def test_a_clearance_is_for_any_arm() -> None:
+def test_a_clearance_applies_to_several_arms() -> None:
     lengths = [0.5, 0.4, 0.3]
     clearance = fp.Clearance(LINKS, [fp.HalfSpace([0, 1, 0], -1)], allowed=[("link_3", "link_1")])
     for scale in (1.0, 0.5, 1.0):
@@ -194,7 +194,7 @@ def test_a_clearance_is_for_any_arm() -> None:
 
 
 @pytest.mark.parametrize("again", [copy.deepcopy, lambda each: pickle.loads(pickle.dumps(each))])
-def test_copies_measure_alike(again: Callable[[Any], Any]) -> None:
+def test_copies_measure_the_same_distances(again: Callable[[Any], Any]) -> None:
     CLEARANCE.nearest(PANDA, READY)
     other = again(CLEARANCE)
     assert other == CLEARANCE
@@ -209,7 +209,7 @@ THROUGH = fp.Line([0.1, 0.2, -0.8], 2.0)
 
 @pytest.mark.parametrize("scheme", SCHEMES, ids=["velocity", "acceleration"])
 @pytest.mark.parametrize("task", ["position", "pose"])
-def test_a_reference_straight_through_a_table(scheme: fp.Scheme, task: str) -> None:
+def test_a_reference_through_a_table_stops_at_the_margin(scheme: fp.Scheme, task: str) -> None:
     run = fp.track(PANDA, THROUGH, scheme, READY, task=task, clearance=CLEARANCE, hold=0.5)
     assert run.clearance is not None
     assert run.status.code in (fp.Status.BLOCKED, fp.Status.STALLED)
@@ -229,7 +229,7 @@ def test_a_reference_straight_through_a_table(scheme: fp.Scheme, task: str) -> N
     assert free.clearance is None
 
 
-def test_a_planar_arm_before_a_post() -> None:
+def test_a_planar_arm_stops_before_a_post() -> None:
     post = fp.Capsule(0, [0.5, 0.5, -1], [0.5, 0.5, 1], 0.1, "post")
     clearance = fp.Clearance(LINKS, [post])
     limits = fp.JointLimits(lower=[-3] * 3, upper=[3] * 3, velocity=[2] * 3, acceleration=[10] * 3, jerk=[500] * 3)
@@ -241,7 +241,7 @@ def test_a_planar_arm_before_a_post() -> None:
 
 
 @pytest.mark.parametrize("scheme", SCHEMES, ids=["velocity", "acceleration"])
-def test_the_tip_is_no_faster_than_it_may_be(scheme: fp.Scheme) -> None:
+def test_the_tip_keeps_its_bound_on_speed(scheme: fp.Scheme) -> None:
     slow = fp.TaskBounds(fp.PositionTask(), velocity=0.1)
     fast, run = (
         fp.track(PANDA, fp.Line([0.1, 0.2, -0.2], 1.0), scheme, READY, bounds=each, hold=4.0) for each in ((), (slow,))
@@ -256,7 +256,7 @@ def test_the_tip_is_no_faster_than_it_may_be(scheme: fp.Scheme) -> None:
     np.testing.assert_allclose(PANDA.forward(run.q[-1])[:3, 3], PANDA.forward(fast.q[-1])[:3, 3], atol=1e-3)
 
 
-def test_distances_of_a_run_are_those_of_its_samples() -> None:
+def test_distances_of_a_run_equal_those_of_its_samples() -> None:
     run = fp.track(PANDA, THROUGH, SCHEMES[1], READY, clearance=CLEARANCE)
     assert run.clearance is not None
     nearest = [CLEARANCE.nearest(PANDA, q) for q in run.q]
@@ -264,7 +264,7 @@ def test_distances_of_a_run_are_those_of_its_samples() -> None:
 
 
 @pytest.mark.parametrize("scheme", SCHEMES, ids=["velocity", "acceleration"])
-def test_a_clearance_of_nothing_changes_nothing(scheme: fp.Scheme) -> None:
+def test_a_clearance_without_pairs_changes_nothing(scheme: fp.Scheme) -> None:
     nothing = fp.Clearance(CAPSULES[:2])
     assert nothing.pairs(PANDA) == []
     free, same = (fp.track(PANDA, THROUGH, scheme, READY, clearance=each) for each in (None, nothing))
@@ -273,7 +273,7 @@ def test_a_clearance_of_nothing_changes_nothing(scheme: fp.Scheme) -> None:
     assert np.all(np.isposinf(same.clearance))
 
 
-def test_a_tick_knows_what_was_nearest_at_its_start() -> None:
+def test_a_tick_has_the_nearest_pair_at_its_start() -> None:
     tracker = fp.Tracker(PANDA, SCHEMES[1], READY, clearance=CLEARANCE)
     follower = tracker.follow(THROUGH)
     for _ in range(1500):
@@ -299,7 +299,7 @@ def test_an_obstacle_moves() -> None:
     assert CLEARANCE.obstacles == (TABLE,)
 
 
-def test_an_arm_goes_out_of_the_way_of_what_is_expected_to_come() -> None:
+def test_an_arm_avoids_an_obstacle_that_is_expected_to_continue() -> None:
     """The same wall, told to come nearer, stops the arm farther away."""
 
     def rests(speed: float) -> float:
@@ -315,7 +315,7 @@ def test_an_arm_goes_out_of_the_way_of_what_is_expected_to_come() -> None:
 # Run files
 
 
-def test_a_run_comes_back_and_is_made_again(tmp_path: Path) -> None:
+def test_a_run_is_loaded_and_replayed(tmp_path: Path) -> None:
     wall = fp.Cuboid(turned(np.random.default_rng(1), 0.0), [0.1, 0.1, 0.1], name="box")
     far = fp.Capsule(0, [2, 0, 0], [2, 0, 1], 0.1, "post")
     clearance = fp.Clearance(CAPSULES[2:], [TABLE, wall, far], margin=1 / 300, allowed=[("box", "upper arm")])
@@ -374,7 +374,7 @@ BALL = fp.Capsule(0, [0, 0, 0], [0, 0, 0], 0.1, "ball")
         (lambda: fp.Tracker(PANDA, fp.MAN(), READY).move("x", TABLE), "name = 'x': must be one of the obstacles: none"),
     ],
 )
-def test_what_is_wrong_is_said(make: Callable[[], Any], message: str) -> None:
+def test_invalid_arguments_are_rejected(make: Callable[[], Any], message: str) -> None:
     with pytest.raises(fp.ParameterError) as caught:
         make()
     assert str(caught.value).startswith(message)
@@ -476,7 +476,7 @@ def test_command_line(in_a_folder: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     assert fp.load("wider/run.npz").options["clearance"].margin == 0.03
 
 
-def test_servo_keeps_clear_of_the_same(in_a_folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_servo_has_the_same_clearance(in_a_folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from fpbm_cpp import viewer
 
     shown: list[dict[str, Any]] = []
@@ -531,7 +531,7 @@ def test_capsules_in_a_job(in_a_folder: Path) -> None:
         (["panda", "--clearance", "arm.urdf"], "clearance.tip = '': must be a link; its branches end in 'l7'"),
     ],
 )
-def test_what_is_wrong_is_a_line(in_a_folder: Path, arguments: list[str], line: str) -> None:
+def test_command_errors_have_one_line(in_a_folder: Path, arguments: list[str], line: str) -> None:
     result = call("track", *arguments)
     assert result.exit_code == 1
     assert result.stderr.startswith(f"Error: {line}")
@@ -539,7 +539,7 @@ def test_what_is_wrong_is_a_line(in_a_folder: Path, arguments: list[str], line: 
 
 
 @pytest.mark.parametrize("name", ["sweep", "tune"])
-def test_commands_that_keep_clear_of_nothing_say_so(in_a_folder: Path, name: str) -> None:
+def test_commands_without_clearance_reject_it(in_a_folder: Path, name: str) -> None:
     result = call(name, "panda", "--job", "table.toml")
     assert result.exit_code == 1
     assert result.stderr == f"Error: {name} does not accept clearance: remove clearance, or use track\n"

@@ -259,7 +259,7 @@ EXACT = {"c": exact_capsules, "h": exact_half_space, "b": exact_box}
 
 
 @pytest.mark.parametrize(("kind", "name"), [("c", "two capsules"), ("h", "capsule, half-space"), ("b", "capsule, box")])
-def test_distances_and_normals_are_exact_and_those_of_coal(program: Path, kind: str, name: str) -> None:
+def test_distances_and_normals_are_exact_and_agree_with_coal(program: Path, kind: str, name: str) -> None:
     worst = dict.fromkeys(("exact", "normal", "gap", "coal", "coal normal"), 0.0)
     count = dict.fromkeys(("pairs", "inside", "apart", "coal", "coal normal"), 0)
 

@@ -126,7 +126,7 @@ ARMS = {"right": PANDA, "left": PANDA}
 BOTH = dict.fromkeys(ARMS, fp.Clearance.preset("panda"))
 
 
-def test_the_preset_is_made_of_that_of_its_arms() -> None:
+def test_the_preset_combines_those_of_its_arms() -> None:
     robot, clearance = fp.Robot.preset("two_pandas"), fp.Clearance.preset("two_pandas", obstacles=[TABLE], margin=0.02)
     assert clearance == fp.Clearance.from_arms(ARMS, BOTH, PLACES, obstacles=[TABLE], margin=0.02)
     assert robot.joints == fp.Robot.from_arms(ARMS, PLACES).joints
@@ -141,7 +141,7 @@ def test_the_preset_is_made_of_that_of_its_arms() -> None:
     assert sorted(pair for pair in own if "table" not in pair) == sorted(alone)
 
 
-def test_distances_of_two_arms_are_those_of_each_alone_or_less() -> None:
+def test_distances_of_two_arms_are_at_most_those_of_each_alone() -> None:
     """Where the arms are far from one another, the nearest pair of one of them; seen by Coal when they are near."""
     rng = np.random.default_rng(2)
     far = {"right": shifted(0, -3, 0), "left": fp_turned(rng, [0, 3, 0.2])}
@@ -228,7 +228,7 @@ def robot_file(folder: Path, base: str = "revolute") -> Path:
     ],
     ids=str,
 )
-def test_capsules_of_links_are_where_the_robot_has_them(options: dict[str, Any], tmp_path: Path) -> None:
+def test_capsules_have_the_positions_of_their_links(options: dict[str, Any], tmp_path: Path) -> None:
     """Each capsule contains its link's cylinder, seen from the frame of that link."""
     file = robot_file(tmp_path)
     robot, clearance = fp.Robot.from_urdf(file, **options), fp.Clearance.from_urdf(file, per_link=1, **options)
@@ -251,7 +251,7 @@ def test_capsules_of_links_are_where_the_robot_has_them(options: dict[str, Any],
     assert sorted(pairs) == expected
 
 
-def test_frames_in_which_gaps_are_measured_are_the_robot_s(tmp_path: Path) -> None:
+def test_frames_of_the_gap_measurement_equal_those_of_the_robot(tmp_path: Path) -> None:
     robot = fp.Robot.from_urdf(robot_file(tmp_path), base="planar")
     joints = [each.joint for each in robot.joints]
     positions = postures(joints, 8)
@@ -354,7 +354,7 @@ RAIL = fp.Robot([fp.TreeJoint(fp.Joint()), fp.TreeJoint(fp.Joint("prismatic", na
         (lambda _: fp.Clearance.preset("three_pandas"), "name = 'three_pandas': must be one of panda, fr3, iiwa14"),
     ],
 )
-def test_what_is_wrong_is_said(make: Callable[[Path], Any], message: str, tmp_path: Path) -> None:
+def test_invalid_arguments_are_rejected(make: Callable[[Path], Any], message: str, tmp_path: Path) -> None:
     with pytest.raises(fp.ParameterError) as caught:
         make(robot_file(tmp_path))
     assert str(caught.value).startswith(message)

@@ -83,7 +83,7 @@ def test_directory_is_a_file(tmp_path: Path) -> None:
     assert (tmp_path / "file").read_text() == "mine"
 
 
-def test_file_in_the_way(tmp_path: Path) -> None:
+def test_directory_with_the_name_of_a_file_is_reported(tmp_path: Path) -> None:
     (tmp_path / "fig1.png").mkdir()
     result = call("reproduce", "--out", str(tmp_path))
     assert result.exit_code == 1

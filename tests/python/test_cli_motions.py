@@ -75,7 +75,7 @@ def sketches(monkeypatch: pytest.MonkeyPatch) -> None:
 # Help
 
 
-def test_every_command_is_listed_in_a_line() -> None:
+def test_every_command_has_one_line_in_the_list() -> None:
     result = call("--help")
     lines = result.output.split("Commands:\n")[1].split("\n\n")[0].splitlines()
     assert [line.split()[0] for line in lines] == list(command.commands)
@@ -115,7 +115,7 @@ def test_every_key_of_a_job_is_an_option() -> None:
 
 @pytest.mark.usefixtures("sketches")
 @pytest.mark.parametrize("name", ["track", "compare", "sweep"])
-def test_examples_work_when_pasted(name: str) -> None:
+def test_examples_of_the_help_run(name: str) -> None:
     if name in ("track", "compare"):
         call("track", "iiwa14", *QUICK, "--save-job", "job.toml")
     for line in examples(name):
@@ -129,7 +129,7 @@ def test_examples_work_when_pasted(name: str) -> None:
 # Track
 
 
-def test_summary_is_the_run() -> None:
+def test_summary_agrees_with_the_run() -> None:
     result = call("track", "panda", "--duration", "2", "--task", "pose", "--hold", "1", "--k1", "7")
     assert result.exit_code == 0
     run = fp.simulate(
@@ -156,7 +156,7 @@ def test_summary_is_the_run() -> None:
     assert result.stdout.isascii()
 
 
-def test_joints_that_slide_are_in_metres() -> None:
+def test_prismatic_joints_have_metres() -> None:
     joints = "".join(f"[[arm.joints]]\ntype = 'prismatic'\naxis = {axis}\n" for axis in np.eye(3).tolist())
     Path("gantry.toml").write_text(f"[arm]\nkind = 'joints'\n{joints}")
     result = call("track", "--job", "gantry.toml", *QUICK)
@@ -164,7 +164,7 @@ def test_joints_that_slide_are_in_metres() -> None:
     assert re.search(r"final joint acceleration +\S+ m/s\^2 ", result.stdout)
 
 
-def test_a_motion_that_stops_is_told_and_fails() -> None:
+def test_a_motion_that_stops_is_reported_and_exits_with_1() -> None:
     result = call("track", "panda", "--radius", "3")
     assert result.exit_code == 1
     assert "status" in result.stdout
@@ -191,7 +191,7 @@ def test_out(in_a_folder: Path) -> None:
 
 
 @pytest.mark.usefixtures("sketches")
-def test_also(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_also_writes_further_formats(monkeypatch: pytest.MonkeyPatch) -> None:
     plot = importlib.import_module("fpbm_cpp.plot")
     monkeypatch.setattr(plot, "animate", lambda run, file, *, dark: file.write_text(f"{len(run.t)} {dark}"))
     result = call("track", "panda", *QUICK, "--out", "out", "--also", "csv", "--also", "gif", "--dark")
@@ -250,7 +250,7 @@ def test_sweep_and_tune_keep_limits(in_a_folder: Path) -> None:
 # Jobs
 
 
-def test_options_say_the_same_as_a_file() -> None:
+def test_options_are_equivalent_to_a_file() -> None:
     arguments = ["planar:1,0.5,0.5", "--path", "lissajous", "--amplitude", "0.05,0.1", "--frequencies", "1,2"]
     arguments += ["--scheme", "balanced", "--alpha", "0.25", "--weights", "2,1,0; 1,2,0; 0,0,1", "--q0", "-0.1,0.5,1e0"]
     result = call("track", *arguments, *QUICK, "--dt", "0.01", "--save-job", "job.toml")
@@ -280,7 +280,7 @@ def test_options_override_a_file() -> None:
         assert job["path"]["duration"] == 0.2
 
 
-def test_paths_of_a_file_are_changed_there() -> None:
+def test_several_paths_of_a_file_reject_path_options() -> None:
     Path("job.toml").write_text("[arm]\nkind = 'planar'\nlengths = [1, 1, 1]\n" + "[[path]]\nkind = 'circle'\n" * 2)
     assert refused("track", "--job", "job.toml", "--radius", "0.1").startswith("--radius: the file has 2 paths")
     assert call("track", "--job", "job.toml", "--path", "circle", "--radius", "0.1", *QUICK).exit_code == 0
@@ -293,7 +293,7 @@ def test_a_job_that_fails_is_not_saved() -> None:
 
 
 @pytest.mark.parametrize("name", ["q", "qd", "qdd"])
-def test_a_joint_beyond_a_bound_is_said(name: str) -> None:
+def test_a_joint_beyond_a_bound_is_reported(name: str) -> None:
     run = prepare({"arm": {"kind": "preset", "name": "panda"}, "run": {"dt": 0.01}}).run()
     values = getattr(run, name).copy()
     values[50, 2] = -20.0
@@ -302,7 +302,7 @@ def test_a_joint_beyond_a_bound_is_said(name: str) -> None:
     assert re.search("joints beyond a bound +1 +panda_joint3: --limits keeps the bounds", said)
 
 
-def test_a_motion_without_a_sample_is_no_film() -> None:
+def test_a_motion_without_samples_has_no_animation() -> None:
     result = call("track", "planar:1,1", "--q0", "0,0", "--out", "out", "--also", "gif")
     assert result.exit_code == 1
     assert result.stderr == (
@@ -356,7 +356,7 @@ TWO_BRANCHES = """<robot name="two"><link name="base"/><link name="camera"/><lin
         (["--job", "wrong.toml", "--radius", "1", "--path", "cirle"], "--path = 'cirle': must be one of "),
     ],
 )
-def test_what_is_wrong_is_said(arguments: list[str], line: str) -> None:
+def test_invalid_options_are_reported(arguments: list[str], line: str) -> None:
     Path("bad.toml").write_text("[arm")
     Path("two.urdf").write_text(TWO_BRANCHES)
     Path("wrong.toml").write_text("[arm]\nkind = 'preset'\nname = 'panda'\n[path]\nkind = 'circle'\nradius = -1")
@@ -364,7 +364,7 @@ def test_what_is_wrong_is_said(arguments: list[str], line: str) -> None:
     assert sorted(os.listdir()) == ["bad.toml", "two.urdf", "wrong.toml"]
 
 
-def test_everything_that_is_wrong_is_said() -> None:
+def test_every_invalid_option_is_reported() -> None:
     result = call("track", "panda", "--alpha", "x", "--dt", "y", "--q0", "z")
     assert result.exit_code == 1
     assert [line.split(" = ")[0] for line in result.stderr.splitlines()] == [
@@ -374,7 +374,7 @@ def test_everything_that_is_wrong_is_said() -> None:
     ]
 
 
-def test_an_arm_is_asked_for() -> None:
+def test_a_missing_arm_is_reported() -> None:
     result = call("track")
     assert result.exit_code == 2
     assert (
@@ -395,7 +395,7 @@ def test_a_folder_that_cannot_be_written_to() -> None:
 
 
 @pytest.mark.usefixtures("sketches")
-def test_a_folder_that_cannot_be_drawn_to() -> None:
+def test_an_unwritable_folder_of_figures_is_reported() -> None:
     Path("file").write_text("mine")
     for name in ("track", "compare"):
         result = call(name, "panda", *QUICK, "--out", "file")
@@ -457,7 +457,7 @@ def test_compare_writes() -> None:
     assert sorted(os.listdir("out")) == ["compare.png", "fpbm.npz", "job.toml", "mvn.npz"]
 
 
-def test_compare_refuses() -> None:
+def test_compare_rejects_invalid_options() -> None:
     assert refused("compare", "panda", "--schemes", "mvn,fbpm").startswith("--schemes = 'fbpm': must be one of mvn, ")
     assert (
         refused("compare", "panda", "--weights", "1") == "--weights = 1: must be real numbers of shape (n,) or (n, n)"
@@ -494,7 +494,7 @@ def test_sweep() -> None:
     assert Path("out/sweep.csv").read_text() != first
 
 
-def test_sweep_refuses() -> None:
+def test_sweep_rejects_invalid_options() -> None:
     assert refused("sweep", "panda", "--vary", "alpha").startswith("--vary alpha: must have the form alpha=0,0.6,1 or ")
     assert refused("sweep", "panda", "--vary", "alpha=0:1").startswith("--vary alpha=0:1: must have the form ")
     assert "did you mean 'alpha'?" in refused("sweep", "panda", "--vary", "alhpa=1")
@@ -502,7 +502,7 @@ def test_sweep_refuses() -> None:
     assert "remove qd0" in refused("sweep", "panda", "--qd0", "0,0,0,0,0,0,0")
 
 
-def test_sweep_says_what_became_of_motions_that_stop() -> None:
+def test_sweep_reports_motions_that_stop() -> None:
     result = call("sweep", "panda", "--radius", "0.5", "--starts", "3")
     assert result.exit_code == 1
     assert "3 of 3: the tip has left its reference" in result.stdout
@@ -538,7 +538,7 @@ def interrupted(arguments: list[str], after: str, seconds: float) -> tuple[str, 
 
 
 @posix
-def test_ctrl_c_keeps_what_is_finished() -> None:
+def test_ctrl_c_keeps_finished_motions() -> None:
     arguments = ["sweep", "panda", "--duration", "0.5", "--starts", "40000", "--out", "out"]
     out, err, code = interrupted(arguments, "by default", 2.0)
     assert code == 130
@@ -591,7 +591,7 @@ def test_view(limits: tuple[str, ...], monkeypatch: pytest.MonkeyPatch) -> None:
     assert result.stdout.splitlines()[-1] == "waited"
 
 
-def test_warnings_are_a_line(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_warnings_have_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(
         vars(viewer), "Viewer", lambda run, **how: warnings.warn("a mesh is missing", stacklevel=1) or Shown()
     )
@@ -612,7 +612,7 @@ def test_view_on_a_port_in_use() -> None:
 
 
 @posix
-def test_ctrl_c_ends_the_viewer_in_peace() -> None:
+def test_ctrl_c_ends_the_viewer_without_an_error() -> None:
     pytest.importorskip("viser")
     out, err, code = interrupted(
         ["view", "panda", *QUICK, "--port", "0", "--no-browser"], ": Ctrl-C stops the server.", 1.0
@@ -622,7 +622,7 @@ def test_ctrl_c_ends_the_viewer_in_peace() -> None:
 
 @posix
 @pytest.mark.parametrize("seconds", [0.0, 0.2, 0.5])
-def test_ctrl_c_ends_the_viewer_while_it_starts(seconds: float) -> None:
+def test_ctrl_c_ends_the_viewer_during_its_start(seconds: float) -> None:
     pytest.importorskip("viser")
     arguments = ["view", "panda", *QUICK, "--port", "0", "--no-browser"]
     _, err, code = interrupted(arguments, "by default", seconds)
@@ -681,7 +681,7 @@ name = "torch"
 """
 
 
-def test_jobs_of_stacks_are_shown_and_dragged(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_servo_and_view_accept_jobs_of_stacks(monkeypatch: pytest.MonkeyPatch) -> None:
     shown = []
     for page in ("Servo", "Viewer"):
         monkeypatch.setitem(vars(viewer), page, lambda *what, **how: shown.append((what, how)) or Shown())
@@ -695,7 +695,7 @@ def test_jobs_of_stacks_are_shown_and_dragged(monkeypatch: pytest.MonkeyPatch) -
     assert (scheme.k1, run.task) == (0, "seam")
 
 
-def test_a_stack_is_dragged_from_a_job() -> None:
+def test_servo_accepts_a_stack_of_a_job() -> None:
     """To the page itself, which the job suits."""
     pytest.importorskip("viser")
     Path("stack.toml").write_text(STACK)
@@ -704,7 +704,7 @@ def test_a_stack_is_dragged_from_a_job() -> None:
         assert f"port {port} is in use" in refused("servo", "--job", "stack.toml", "--port", port, "--no-browser")
 
 
-def test_servo_has_no_path_and_always_limits() -> None:
+def test_servo_has_no_path_options_and_always_limits() -> None:
     result = call("servo", "--help")
     headings = [line for line in result.output.splitlines() if line and line[0] != " " and line.endswith(":")]
     assert headings == ["Options:", "Arm and start:", "Scheme:", "Joint limits:", "Clearance:"]
@@ -714,7 +714,7 @@ def test_servo_has_no_path_and_always_limits() -> None:
         assert call("servo", "panda", option, "1").exit_code == 2
 
 
-def test_servo_says_what_is_wrong() -> None:
+def test_servo_reports_invalid_options() -> None:
     shutil.copy(ROOT / "examples/04_exported_arm.urdf", "arm.urdf")
     said = "--limit-acceleration: is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is usual"
     assert refused("servo", "arm.urdf", "--tip", "tool") == said
@@ -734,7 +734,7 @@ def test_servo_says_what_is_wrong() -> None:
 
 
 @posix
-def test_ctrl_c_ends_servo_in_peace() -> None:
+def test_ctrl_c_ends_servo_without_an_error() -> None:
     pytest.importorskip("viser")
     out, err, code = interrupted(["servo", "panda", "--port", "0", "--no-browser"], ": Ctrl-C stops the server.", 1.0)
     assert (code, err, out) == (0, "", "")

@@ -140,14 +140,14 @@ def test_repr_evaluates(name):
     expect_same(THINGS[name], evaluated(repr(THINGS[name])))
 
 
-def test_no_two_things_are_equal():
+def test_different_objects_are_unequal():
     assert len(set(THINGS.values())) == len(THINGS)
     for one in THINGS.values():
         assert sum(one == other for other in THINGS.values()) == 1
     assert fp.MAN() != "MAN()"
 
 
-def test_reading():
+def test_attributes_have_the_given_values():
     scheme = fp.FPBM(1, [1, 2, 3], k1=10, k2=np.float32(0.5), null_damping=np.array(2))
     assert (scheme.alpha, scheme.k1, scheme.k2, scheme.null_damping) == (1.0, 10.0, 0.5, 2.0)
     assert all(type(value) is float for value in (scheme.alpha, scheme.k1, scheme.k2, scheme.null_damping))
@@ -179,7 +179,7 @@ def test_replacing():
 
 
 @every_thing
-def test_nothing_can_be_changed(name):
+def test_objects_are_immutable(name):
     thing = THINGS[name]
     for parameter in parameters(type(thing)):
         with pytest.raises(dataclasses.FrozenInstanceError):
@@ -190,7 +190,7 @@ def test_nothing_can_be_changed(name):
                 value[...] = 0.0
 
 
-def test_what_was_given_may_change_afterwards():
+def test_arguments_are_copied():
     points, weights, rotation = np.eye(3), np.ones(4), np.array([0.1, 0.2, 0.3])
     path = fp.Waypoints(points, duration=1.0).with_rotation(rotation)
     scheme = fp.WMVN(weights)
@@ -201,7 +201,7 @@ def test_what_was_given_may_change_afterwards():
 
 
 @pytest.mark.parametrize("name", SOME_SCHEMES)
-def test_copied_schemes_move_an_arm_alike(name):
+def test_copied_schemes_give_the_same_motion(name):
     scheme = SOME_SCHEMES[name]
     path = fp.Circle(0.05, 0.5).in_plane("yz")
     here = fp.simulate(PANDA, path, scheme, READY, dt=0.01)
@@ -287,7 +287,7 @@ def test_bounds_are_kept(maker, value, data):
         (lambda: fp.SerialArm.preset("pnada"), "name", None, "pnada"),
     ],
 )
-def test_errors_say_what_they_are_about(make, name, index, value):
+def test_errors_have_name_index_and_value(make, name, index, value):
     with pytest.raises(ParameterError) as caught:
         make()
     assert isinstance(caught.value, ValueError)
@@ -329,12 +329,12 @@ def any_path(draw):
 
 
 @given(any_path())
-def test_paths_go_through_tables(path):
+def test_paths_are_converted_to_tables_and_back(path):
     expect_equal(path)
 
 
 @given(st.sampled_from([*SCHEMES.values()]), st.data(), st.integers(1, 9))
-def test_schemes_go_through_tables(maker, data, n):
+def test_schemes_are_converted_to_tables_and_back(maker, data, n):
     values = {}
     for name, parameter in parameters(maker).items():
         if parameter.type is float and (parameter.required or data.draw(st.booleans())):
@@ -353,7 +353,7 @@ def expect_equal(thing):
     assert again(thing) == thing
 
 
-def test_tables_that_people_write():
+def test_short_tables_are_read():
     table = {
         "kind": "circle",
         "radius": 0.2,
@@ -407,7 +407,7 @@ CIRCLE = {"kind": "circle", "radius": 1, "duration": 1}
         ({"kind": "preset"}, ARMS, ["path.name: is missing"]),
     ],
 )
-def test_wrong_tables(table, makers, words):
+def test_invalid_tables_are_rejected(table, makers, words):
     (problem,) = problems(table, makers, "path")
     assert all(word in str(problem) for word in words)
     with pytest.raises(ParameterError) as caught:
@@ -415,17 +415,17 @@ def test_wrong_tables(table, makers, words):
     assert str(caught.value) == str(problem)
 
 
-def test_all_problems_are_told():
+def test_all_problems_are_reported():
     table = [{**CIRCLE, "radius": 0, "time_law": "sin"}, {"kind": "line", "displacement": [1, 2, 3, 4]}]
     names = [problem.name for problem in problems(table, PATHS, "path")]
     assert names == ["path[0].radius", "path[0].time_law", "path[1].displacement", "path[1].duration"]
     assert [problem.name for problem in problems(table, PATHS, "path", usual=True)] == names[:3]
 
 
-def test_path_options_are_those_of_the_paths():
+def test_path_options_equal_those_of_the_paths():
     assert set(PATH_OPTIONS) == {"in_plane", "with_rotation", "rotation_time_law"}
 
 
-def test_only_what_is_ours_makes_a_table():
+def test_foreign_objects_have_no_table():
     with pytest.raises(TypeError, match="must be an object of this package"):
         to_table(object())

@@ -167,7 +167,7 @@ int main() {
 
 
 @pytest.mark.skipif(not shutil.which("g++") or not EIGEN.exists(), reason="needs g++ and Eigen")
-def test_header_computes_what_numpy_does(tmp_path: Path) -> None:
+def test_header_agrees_with_numpy(tmp_path: Path) -> None:
     for name, joints in ARMS.items():
         source = 'an "arm" \\\nint x = 1;'
         file = tmp_path / f"{name.split('::')[-1]}.hpp"
@@ -255,7 +255,7 @@ def robot_of_branches() -> fp.Robot:
 
 
 @pytest.mark.skipif(not shutil.which("g++") or not EIGEN.exists(), reason="needs g++ and Eigen")
-def test_a_tree_is_the_robot_s(tmp_path: Path) -> None:
+def test_a_tree_equals_the_robot(tmp_path: Path) -> None:
     robot = robot_of_branches()
     (tmp_path / "tree.hpp").write_text(export_tree(robot, name="t", source="robot"), encoding="utf-8")
     (tmp_path / "main.cpp").write_text(TREE_PROGRAM)
@@ -294,7 +294,7 @@ def test_a_tree_of_float_and_long_sources() -> None:
 # The text
 
 
-def test_what_is_as_by_default_is_left_out() -> None:
+def test_default_values_are_omitted() -> None:
     text = export_header([Joint(name="a"), Joint("continuous", velocity=2.0)], np.eye(4), name="n")
     assert "placement" not in text
     assert "chain.tip" not in text
@@ -305,7 +305,7 @@ def test_what_is_as_by_default_is_left_out() -> None:
 
 
 @given(numbers=st.lists(st.floats(allow_nan=False, allow_infinity=False), min_size=16, max_size=16))
-def test_numbers_survive(numbers: list[float]) -> None:
+def test_numbers_are_written_exactly(numbers: list[float]) -> None:
     p, R, axis, lower = numbers[:3], np.reshape(numbers[3:12], (3, 3)), numbers[12:15], numbers[15]
     T = np.block([[R, np.reshape(p, (3, 1))], [np.zeros(3), 1]])
     text = export_header([Joint("revolute", T, axis, lower)], T, name="n")
@@ -321,7 +321,7 @@ def test_numbers_survive(numbers: list[float]) -> None:
         assert np.array_equal(R, np.eye(3)) or written(f"{name}.R") == R.ravel().tolist()
 
 
-def test_capsules_are_there_where_they_are_given() -> None:
+def test_capsules_are_written_if_they_are_given() -> None:
     without, none, one = (
         export_header([Joint()], np.eye(4), name="n", capsules=capsules)
         for capsules in (None, [], [Capsule(1, [0, 0, 0], [0, 0, 1], 0.5, "link")])
@@ -350,7 +350,7 @@ def test_capsules_are_there_where_they_are_given() -> None:
         ("fpbm", "fpbm_arm"),
     ],
 )
-def test_namespace_after_a_file(stem: str, name: str) -> None:
+def test_namespace_is_derived_from_the_file_name(stem: str, name: str) -> None:
     assert namespace_of(stem) == name
     assert f"namespace {name} {{" in export_header([Joint()], np.eye(4), name=name)
 
@@ -358,13 +358,13 @@ def test_namespace_after_a_file(stem: str, name: str) -> None:
 @pytest.mark.parametrize(
     "name", ["", "7up", "a b", "a-b", "a\n", "_a", "a__b", "int", "fpbm", "std::x", "a::", "::a", "a:b", "é", "x{"]
 )
-def test_name_that_no_namespace_can_have(name: str) -> None:
+def test_invalid_namespace_is_rejected(name: str) -> None:
     with pytest.raises(ValueError, match=r"must be a C\+\+ identifier, not a keyword, Eigen, fpbm or std") as caught:
         export_header([Joint()], np.eye(4), name=name)
     assert str(caught.value).startswith(f"name = {name!r}: ")
 
 
-def test_source_stays_in_its_comment() -> None:
+def test_source_is_escaped_in_its_comment() -> None:
     text = export_header([Joint()], np.eye(4), name="n", source="a\nb\r\u2028\u202ec\\ é")
     assert text.startswith(
         "// Written by fpbm-cpp export-header from a?b???c\\ é. Do not edit: write it again.\n#pragma"
@@ -390,7 +390,7 @@ def arm(tmp_path: Path) -> Path:
     return file
 
 
-def test_example_is_as_written_today(tmp_path: Path) -> None:
+def test_example_is_up_to_date(tmp_path: Path) -> None:
     """If not: fpbm-cpp export-header examples/04_exported_arm.urdf --tip tool -o examples/04_exported_arm.hpp"""
     out = tmp_path / "04_exported_arm.hpp"
     result = call(ROOT / "examples/04_exported_arm.urdf", "--tip", "tool", "-o", out)
@@ -399,7 +399,7 @@ def test_example_is_as_written_today(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["panda", "ur5e"])
-def test_firmware_s_arms_are_as_written_today(name: str, tmp_path: Path) -> None:
+def test_arms_of_the_firmware_are_up_to_date(name: str, tmp_path: Path) -> None:
     """If not: fpbm-cpp export-header panda --scalar float -o examples/firmware/panda.hpp, and so on."""
     out = tmp_path / f"{name}.hpp"
     result = call(name, "--scalar", "float", "-o", out)
@@ -408,7 +408,7 @@ def test_firmware_s_arms_are_as_written_today(name: str, tmp_path: Path) -> None
 
 
 @pytest.mark.skipif(G1 is None or not G1.exists(), reason="needs example-robot-data")
-def test_upper_body_is_as_written_today(tmp_path: Path) -> None:
+def test_upper_body_is_up_to_date(tmp_path: Path) -> None:
     """If not: fpbm-cpp export-header g1_29dof_rev_1_0.urdf --base fixed --tip left_wrist_yaw_link --tip
     right_wrist_yaw_link -o examples/17_upper_body.hpp"""
     out = tmp_path / "17_upper_body.hpp"
@@ -469,7 +469,7 @@ def test_numbers_in_float() -> None:
         export_header([Joint()], np.eye(4), name="n", scalar="half")
 
 
-def test_command_writes_what_the_function_does(arm: Path, tmp_path: Path) -> None:
+def test_command_writes_the_header_of_the_function(arm: Path, tmp_path: Path) -> None:
     joints, tip = read_urdf(arm, "tip", "mid")
     assert call(arm, "--tip", "tip", "--base", "mid", "-o", tmp_path / "my-arm.hpp").exit_code == 0
     expected = export_header(joints, tip, name="my_arm", source="two.urdf, base mid, tip tip")
@@ -502,7 +502,7 @@ def test_capsules_of_a_file(arm: Path) -> None:
         assert result.stdout == export_header(joints, tip, name="two", source=source, capsules=capsules)
 
 
-def test_file_is_replaced_and_its_mode_is_usual(arm: Path, tmp_path: Path) -> None:
+def test_file_is_replaced_with_the_default_mode(arm: Path, tmp_path: Path) -> None:
     out = tmp_path / "out.hpp"
     out.write_text("old")
     (tmp_path / "link.hpp").symlink_to(out)
@@ -514,7 +514,7 @@ def test_file_is_replaced_and_its_mode_is_usual(arm: Path, tmp_path: Path) -> No
 
 
 @pytest.mark.filterwarnings("default")
-def test_held_joint_is_said(tmp_path: Path) -> None:
+def test_held_joint_is_reported(tmp_path: Path) -> None:
     mimic = '<mimic joint="d" offset="0.1"/>'
     finger = f'<joint name="c" type="prismatic"><parent link="tip"/><child link="pad"/>{mimic}</joint>'
     leader = '<joint name="d" type="prismatic"><parent link="tip"/><child link="left"/></joint>'
@@ -539,7 +539,7 @@ def assert_refused(result: Result, message: str) -> None:
     assert result.output == f"Error: {message}\n"
 
 
-def test_errors_are_one_plain_line(arm: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_errors_have_one_line(arm: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     out = tmp_path / "out.hpp"
     out.write_text("mine")
     before = sorted(os.listdir(tmp_path))
@@ -570,7 +570,7 @@ def test_errors_are_one_plain_line(arm: Path, tmp_path: Path, monkeypatch: pytes
     assert sorted(os.listdir(tmp_path)) == before
 
 
-def test_wrong_usage(arm: Path) -> None:
+def test_invalid_usage_is_reported(arm: Path) -> None:
     for arguments, said in (((arm, "--tip", "tip"), "--out"), ((), "ARM")):
         result = call(*arguments)
         assert result.exit_code == 2

@@ -118,7 +118,7 @@ def commands(motion) -> tuple[np.ndarray, np.ndarray]:
     return np.rint(1e3 * (np.array(motion.time) - motion.time[0])), np.array(motion.q)[motion.sent]
 
 
-def test_libfranka_has_nothing_to_refuse(motion):
+def test_libfranka_rejects_no_command(motion):
     assert refused(*from_rest_to_rest(*commands(motion))) == set()
     assert refused(*from_rest_to_rest(np.arange(len(motion.q)), np.array(motion.q))) == set()
     shares = motion.shares()
@@ -159,7 +159,7 @@ def hasty(q: np.ndarray) -> None:
         (hasty, {"velocity", "approach"}),
     ],
 )
-def test_faults_are_seen(motion, fault, conditions):
+def test_faults_are_detected(motion, fault, conditions):
     q = np.tile(motion.q[0], (1500, 1))
     assert refused(*from_rest_to_rest(np.arange(1500), q)) == set()
     fault(q)
@@ -167,7 +167,7 @@ def test_faults_are_seen(motion, fault, conditions):
 
 
 @pytest.mark.parametrize(("way", "conditions"), [(0.30, set()), (0.20, {"velocity", "approach"})])
-def test_near_the_end_of_its_range_a_joint_must_be_slower(motion, way, conditions):
+def test_the_velocity_bound_decreases_near_the_end_of_the_range(motion, way, conditions):
     """At 0.9 rad/s, which joint 2 may be so far from its end as (0.9 + 0.25)^2 / 5.17 rad = 0.256 rad."""
     q = np.tile(motion.q[0], (50, 1))
     t = 1e-3 * np.arange(50)
@@ -175,7 +175,7 @@ def test_near_the_end_of_its_range_a_joint_must_be_slower(motion, way, condition
     assert refused(t, q) == conditions
 
 
-def test_lost_cycles_hide_no_fault(motion):
+def test_lost_cycles_do_not_hide_a_fault(motion):
     q = np.array(motion.q)
     ticks = np.arange(len(q))
     kept = np.random.default_rng(1).random(len(ticks)) > 0.2
@@ -185,7 +185,7 @@ def test_lost_cycles_hide_no_fault(motion):
     assert refused(*from_rest_to_rest(ticks[kept], q[kept])) >= {"acceleration", "jerk"}
 
 
-def test_the_robot_was_sent_what_was_recorded(motion):
+def test_the_robot_received_the_recorded_commands(motion):
     """It tells each command in the state after, as a float."""
     told = {tuple(np.float32(q).tolist()) for q in commands(motion)[1]}
     unknown = [desired for desired in motion.desired if tuple(desired) not in told]
@@ -202,7 +202,7 @@ def test_the_tip_is_on_the_circle(motion):
         np.testing.assert_allclose(off[:3, :3], 0, atol=1e-6)
 
 
-def test_targets_are_late_uneven_and_lost():
+def test_targets_are_delayed_reordered_and_lost():
     targets = example.stream(np.eye(4), STREAM)
     stamps = np.array([target.stamp for target in targets])
     assert 0.6 < len(targets) / (30 * STREAM) < 0.9
@@ -230,14 +230,14 @@ class Interrupted:
         return self.left < 0
 
 
-def test_ctrl_c_stops_within_bounds_too(monkeypatch):
+def test_ctrl_c_stops_within_bounds(monkeypatch):
     monkeypatch.setattr(example, "interrupted", Interrupted(700))  # In the midst of the circle.
     motion = drive_robot()[0]
     assert len(motion.q) < 1500
     assert refused(*from_rest_to_rest(np.arange(len(motion.q)), np.array(motion.q))) == set()
 
 
-def test_a_robot_that_falls_silent_is_an_error():
+def test_a_robot_without_response_raises():
     """And no endless wait: the simulator ends in the motion, if not before."""
     with pytest.raises(RuntimeError), example.simulator(lifetime=3) as address:
         example.move(franka.Robot(address, franka.RealtimeConfig.kIgnore))

@@ -136,14 +136,14 @@ def test_required_postures_are_accepted(name: str) -> None:
 
 
 @with_robots
-def test_postures_that_are_accepted_anyway_change_nothing(once) -> None:
+def test_accepted_postures_do_not_change_the_fit(once) -> None:
     urdf, tip, _, homes = OTHERS["panda with its hand"]
     assert fp.Clearance.from_urdf(ROBOTS / urdf, tip, postures=homes) == once(fitted, urdf, tip, None, 2)
 
 
 @with_robots
 @pytest.mark.parametrize("postures", [[0.0] * 5, [[[0.0] * 6]], [[np.nan] * 6], "home"])
-def test_wrong_postures_are_refused(postures: object) -> None:
+def test_invalid_postures_are_rejected(postures: object) -> None:
     urdf, tip, _, _ = OTHERS["z1"]
     with pytest.raises(fp.ParameterError, match=r"^postures") as caught:
         fp.Clearance.from_urdf(ROBOTS / urdf, tip, postures=postures)
@@ -183,7 +183,7 @@ def test_group_states_are_required(tmp_path: Path) -> None:
 
 
 @with_robots
-def test_pieces_of_cut_triangles_are_inside(once) -> None:
+def test_capsules_contain_divided_triangles(once) -> None:
     """Every triangle of a link's meshes is covered: points that fill it are each in some capsule."""
     urdf, tip, _, _ = OTHERS["panda with its hand"]
     found = once(fitted, urdf, tip, None, 2).capsules
@@ -201,7 +201,7 @@ def test_pieces_of_cut_triangles_are_inside(once) -> None:
 
 
 @with_robots
-def test_the_same_each_time(once) -> None:
+def test_the_fit_is_deterministic(once) -> None:
     """By default for an arm whose fit is fast."""
     urdf, tip, base, most = (*OTHERS["z1"][:3], 2) if "FPBM_ALL_HOMES" in os.environ else ARMS["ur5"]
     assert tuple(capsules_of(ROBOTS / urdf, tip, base, per_link=most)) == tuple(
@@ -222,7 +222,7 @@ CLOSE = {
 
 @with_robots
 @pytest.mark.parametrize("name", [pytest.param("z1", marks=heavy), "tiago"])
-def test_links_that_touch_are_refused(name: str, once) -> None:
+def test_links_that_touch_are_rejected(name: str, once) -> None:
     (urdf, tip, base, _), message = CLOSE[name]
     arm = fp.SerialArm.from_urdf(ROBOTS / urdf, tip, base)
     with pytest.raises(fp.ParameterError, match=message):
@@ -269,7 +269,7 @@ def placed(rng: np.random.Generator) -> Array:
     return frame
 
 
-def test_distances_of_capsules_are_those_of_the_compiled_part() -> None:
+def test_distances_of_capsules_equal_those_of_the_extension() -> None:
     rng = np.random.default_rng(1)
     arm = fp.SerialArm([fp.Joint(), fp.Joint(placement=placed(rng), axis=(0, 1, 0)), fp.Joint(placement=placed(rng))])
     q = rng.uniform(-3, 3, (200, 3))
@@ -285,7 +285,7 @@ def test_distances_of_capsules_are_those_of_the_compiled_part() -> None:
         assert np.abs(found - expected)[apart].max() < 1e-9
 
 
-def test_hulls_are_at_least_that_far_apart() -> None:
+def test_hull_distances_are_lower_bounds() -> None:
     rng = np.random.default_rng(2)
     for _ in range(50):
         pose = placed(rng)
@@ -309,7 +309,7 @@ def test_gaps_are_measured_against_the_margin() -> None:
     assert Gaps([link(0), link(2)], frames, 0.04).worst(set()) is None
 
 
-def test_a_wrong_margin_is_refused_before_the_fit(tmp_path: Path) -> None:
+def test_an_invalid_margin_is_rejected_before_the_fit(tmp_path: Path) -> None:
     with pytest.raises(fp.ParameterError, match=r"^margin"):
         fp.Clearance.from_urdf(tmp_path / "none.urdf", "tip", margin=-1.0)
 
@@ -324,7 +324,7 @@ def test_postures_fill_the_ranges() -> None:
     assert np.all(np.isfinite(postures([fp.Joint(type="continuous", mimic=(1, 2.0, 0.5)), fp.Joint()], 8)))
 
 
-def test_one_capsule_a_link_if_asked(tmp_path: Path) -> None:
+def test_per_link_limits_the_number_of_capsules(tmp_path: Path) -> None:
     link = '<link name="{}"><collision><geometry><box size="0.1 0.1 0.3"/></geometry></collision></link>'
     joint = (
         '<joint name="{0}" type="revolute"><parent link="{1}"/><child link="{2}"/><origin xyz="0 0 0.12"/>'

@@ -73,7 +73,7 @@ def both_hands(gains: dict[str, float]) -> list[fp.PoseTask]:
     return [fp.PoseTask(LINKS[hand], name=hand, **gains) for hand in HANDS]
 
 
-def test_the_preset_is_the_file_s_robot(robot: fp.Robot) -> None:
+def test_the_preset_equals_the_robot_of_its_file(robot: fp.Robot) -> None:
     preset = fp.Robot.preset("g1_upper_body")
     assert preset.joint_names == robot.joint_names
     for bound in ("lower", "upper", "velocity"):
@@ -90,7 +90,7 @@ def test_the_preset_is_the_file_s_robot(robot: fp.Robot) -> None:
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_both_hands_are_there_in_the_allowed_steps(robot: fp.Robot, case: str) -> None:
+def test_both_hands_reach_their_targets_in_the_allowed_steps(robot: fp.Robot, case: str) -> None:
     steps, repeat, left = CASES[case]
     stack = fp.Stack(both_hands({"k": 20}), fp.PostureTask(np.zeros(DOF), k=2))
     tracker = fp.Tracker(robot, fp.MVN(), np.zeros(DOF), stack=stack, dt=STEP, error_bound=2.0)

@@ -223,7 +223,7 @@ def test_bounds() -> None:
     assert np.arccos(-run.arm.forward(run.q[-1])[2, 2]) <= 0.3 + 1e-9
 
 
-def test_a_run_is_that_of_the_library() -> None:
+def test_a_run_equals_that_of_the_library() -> None:
     motion = prepare({"arm": PANDA, "path": {"kind": "circle", "duration": 1.0}, "run": {"task": "pose"}})
     scheme = fp.FPBM(0.6, np.ones(7), 10, 25, null_damping=2)
     run = fp.simulate(motion.arm, fp.Circle(0.1, 1.0).in_plane("yz"), scheme, READY, task="pose")
@@ -245,7 +245,7 @@ def test_limits_are_kept() -> None:
     np.testing.assert_array_equal(motion.limits.upper, motion.arm.limits.upper)
 
 
-def test_a_scheme_has_the_damping_that_the_job_says() -> None:
+def test_a_scheme_has_the_damping_of_the_job() -> None:
     table = {"arm": PANDA, "path": {"kind": "circle", "duration": 1.0}, "limits": {}, "run": {"hold": 9.0}}
     assert prepare(table).scheme.null_damping == 2.0
     assert np.abs(prepare(table).run().qd[-1]).max() < 1e-6
@@ -256,7 +256,7 @@ def test_a_scheme_has_the_damping_that_the_job_says() -> None:
 # Omitted keys
 
 
-def test_what_was_taken_is_said() -> None:
+def test_default_values_are_reported() -> None:
     motion = prepare({"arm": PANDA, "scheme": {"kind": "fpbm", "k1": 3.0}})
     taken = {text for texts in motion.taken.values() for text in texts}
     assert "k1 = 3" not in taken
@@ -264,7 +264,7 @@ def test_what_was_taken_is_said() -> None:
     assert not prepare(motion.job).taken
 
 
-def test_a_path_of_the_plane_is_laid_before_an_arm_in_space_alone() -> None:
+def test_planar_paths_have_a_plane_for_arms_in_space_only() -> None:
     assert prepare({"arm": PLANAR}).job["path"].get("in_plane") is None
     assert prepare({"arm": PANDA}).job["path"]["in_plane"] == "yz"
     line = {"kind": "line", "displacement": [0.1, 0, 0]}
@@ -273,7 +273,7 @@ def test_a_path_of_the_plane_is_laid_before_an_arm_in_space_alone() -> None:
 
 @pytest.mark.parametrize("name", ["panda", "iiwa14", "gen3", "ur5e", "ur10e"])
 @pytest.mark.parametrize("task", ["position", "pose"])
-def test_every_preset_goes_its_way_by_default(name: str, task: str) -> None:
+def test_every_preset_follows_the_default_path(name: str, task: str) -> None:
     motion = prepare({"arm": {"kind": "preset", "name": name}, "run": {"task": task}})
     assert motion.run().max_error() < 1e-9
     if name != "gen3":
@@ -281,7 +281,7 @@ def test_every_preset_goes_its_way_by_default(name: str, task: str) -> None:
 
 
 @pytest.mark.parametrize("links", range(2, 11))
-def test_planar_arms_go_their_way_by_default(links: int) -> None:
+def test_planar_arms_follow_the_default_path(links: int) -> None:
     assert prepare({"arm": {"kind": "planar", "lengths": [1.0] * links}}).run().max_error() < 1e-9
 
 
@@ -337,7 +337,7 @@ numbers = st.floats(0.0, 1e3)
 @given(
     alpha=st.floats(0.0, 1.0), k1=numbers, k2=numbers, weights=st.lists(st.floats(1e-3, 1e3), min_size=4, max_size=4)
 )
-def test_numbers_survive(
+def test_numbers_are_written_exactly(
     tmp_path_factory: pytest.TempPathFactory, alpha: float, k1: float, k2: float, weights: list[float]
 ) -> None:
     scheme = {"kind": "fpbm", "alpha": alpha, "k1": k1, "k2": k2, "weights": weights}
@@ -347,7 +347,7 @@ def test_numbers_survive(
     assert read_job(file) == job
 
 
-def test_a_file_is_as_one_would_write_it(tmp_path: Path) -> None:
+def test_a_file_has_readable_tables(tmp_path: Path) -> None:
     file = tmp_path / "mine.toml"
     write_job(prepare({"arm": PLANAR}).job, file)
     assert file.read_text().splitlines()[:7] == [
@@ -363,7 +363,7 @@ def test_a_file_is_as_one_would_write_it(tmp_path: Path) -> None:
     assert lines[lines.index("[scheme]") :][:7] == ["[scheme]", "kind", "alpha", "weights", "k1", "k2", "null_damping"]
 
 
-def test_files_in_a_file_are_seen_from_its_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_file_names_are_relative_to_the_folder_of_the_job(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "arms").mkdir()
     (tmp_path / "jobs").mkdir()
     (tmp_path / "arms/my.urdf").write_text((ROOT / "examples/04_exported_arm.urdf").read_text())
@@ -377,7 +377,7 @@ def test_files_in_a_file_are_seen_from_its_folder(tmp_path: Path, monkeypatch: p
     assert prepare(read_job(tmp_path / "jobs/job.toml")).arm.dof == 7
 
 
-def test_files_that_are_none(tmp_path: Path) -> None:
+def test_invalid_files_are_rejected(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
         read_job(tmp_path / "none.toml")
     for content in (b"[arm", b"a = ", b"\xff", b"[arm]\n[arm]\n"):
@@ -468,12 +468,12 @@ LAWS = "sin_squared, quintic, constant_speed"
         ),
     ],
 )
-def test_what_is_wrong_is_said(text: str, line: str) -> None:
+def test_an_invalid_value_is_reported(text: str, line: str) -> None:
     (said,) = complaints(text)
     assert line in said
 
 
-def test_everything_that_is_wrong_is_said() -> None:
+def test_every_invalid_value_is_reported() -> None:
     text = "[arm]\nkind = 'preset'\nname = 3\n[path]\nkind = 'circle'\nradius = 'x'\n[run]\nq0 = 'x'\ndt = 'x'"
     assert [line.split(" ")[0] for line in complaints(text)] == ["arm.name", "path.radius", "run.q0", "run.dt"]
 
@@ -483,7 +483,7 @@ def test_a_long_value_is_cut() -> None:
     assert len(line) < 130
 
 
-def test_what_the_run_finds_is_said_too() -> None:
+def test_errors_of_the_run_are_reported() -> None:
     motion = prepare({"arm": PANDA, "run": {"qd0": [1.0]}, "limits": {}})
     with pytest.raises(JobError, match=r"^run\.qd0 has 1 entr"):
         motion.run()

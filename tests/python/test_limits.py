@@ -20,8 +20,8 @@ def random_joints(rng, n):
         jerk=jerk,
     )
     qdd = rng.uniform(-1, 1, n) * np.minimum(acceleration, 0.99 * np.sqrt(2 * jerk * limits.velocity))
-    room = limits.velocity - qdd**2 / (2 * jerk)
-    return limits, rng.uniform(-1, 1, n) * room, qdd
+    slack = limits.velocity - qdd**2 / (2 * jerk)
+    return limits, rng.uniform(-1, 1, n) * slack, qdd
 
 
 def quickest_stop(ruckig, qd, qdd, acceleration, jerk):
@@ -37,7 +37,7 @@ def quickest_stop(ruckig, qd, qdd, acceleration, jerk):
     return trajectory.duration, extrema.min, extrema.max
 
 
-def test_a_stop_takes_at_most_a_tick_longer_than_ruckigs():
+def test_a_stop_lasts_at_most_a_tick_longer_than_that_of_ruckig():
     ruckig = pytest.importorskip("ruckig", reason="Ruckig is not installed")
     rng = np.random.default_rng(1)
     n, late, count = 32, [], 0
@@ -66,36 +66,36 @@ def test_a_stop_takes_at_most_a_tick_longer_than_ruckigs():
     assert np.max(late) <= 1
 
 
-def test_no_state_is_refused_that_ruckig_can_stop_but_for_the_room_of_the_envelope():
+def test_states_are_accepted_if_ruckig_can_stop_them_with_slack():
     ruckig = pytest.importorskip("ruckig", reason="Ruckig is not installed")
     rng = np.random.default_rng(2)
     arm = fp.PlanarArm([0.5, 0.5])
     scheme = fp.MAN()
-    stopped = refused = 0
+    stopped = rejected = 0
     for _ in range(10000):
         limits, qd, qdd = random_joints(rng, 2)
         q = rng.uniform(limits.lower, limits.upper)
-        lowest, highest, room = np.zeros(2), np.zeros(2), np.zeros(2)
+        lowest, highest, slack = np.zeros(2), np.zeros(2), np.zeros(2)
         for i in range(2):
             _, low, high = quickest_stop(ruckig, qd[i], qdd[i], limits.acceleration[i], limits.jerk[i])
             lowest[i], highest[i] = q[i] + low - limits.lower[i], limits.upper[i] - q[i] - high
             fastest = max(abs(qd[i]), abs(qd[i] + qdd[i] * abs(qdd[i]) / (2 * limits.jerk[i])))
-            room[i] = 2 * limits.acceleration[i] / limits.jerk[i] * fastest
+            slack[i] = 2 * limits.acceleration[i] / limits.jerk[i] * fastest
         try:
             fp.Tracker(arm, scheme, q, qd0=qd, qdd0=qdd, limits=limits)
-            taken = True
+            accepted = True
         except fp.ParameterError:
-            taken = False
+            accepted = False
         if np.any(np.minimum(lowest, highest) < -1e-9):
-            assert not taken
-        elif np.all(np.minimum(lowest, highest) > room):
-            assert taken
+            assert not accepted
+        elif np.all(np.minimum(lowest, highest) > slack):
+            assert accepted
         stopped += 1
-        refused += not taken and bool(np.all(np.minimum(lowest, highest) > 0))
-    print(f"{stopped} states: {refused} refused that Ruckig can stop, each within the room that an envelope takes")
+        rejected += not accepted and bool(np.all(np.minimum(lowest, highest) > 0))
+    print(f"{stopped} states: {rejected} rejected that Ruckig can stop, each within the slack of the braking envelope")
 
 
-def test_the_limiter_is_the_trackers():
+def test_the_limiter_equals_that_of_the_tracker():
     rng = np.random.default_rng(3)
     arm = fp.SerialArm.preset("panda")
     q, qd, last = np.array([0.0, -0.3, 0.0, -1.8, 0.0, 1.6, 0.8]), np.zeros(7), np.zeros(7)
@@ -118,7 +118,7 @@ def test_the_limiter_is_the_trackers():
 
 
 @pytest.mark.parametrize("level", ["acceleration", "velocity"])
-def test_rows_are_kept_and_the_task_where_the_null_space_serves(level):
+def test_rows_are_kept_and_the_task_if_the_null_space_suffices(level):
     rng = np.random.default_rng(4)
     n = 7
     limits = fp.JointLimits(lower=[-3] * n, upper=[3] * n, velocity=[50] * n, acceleration=[1e5] * n)
@@ -171,7 +171,7 @@ def test_bad_calls(make, words):
         make(limits)
 
 
-def test_a_tracker_goes_on_from_anothers_state():
+def test_a_tracker_continues_from_the_state_of_another():
     arm = fp.SerialArm.preset("panda")
     scheme = fp.FPBM(0.6, np.ones(7), 20, 100, null_damping=2)
     first = fp.Tracker(arm, scheme, [0.0, -0.3, 0.0, -1.8, 0.0, 1.6, 0.8])

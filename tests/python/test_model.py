@@ -21,7 +21,7 @@ def states(draw):
 
 
 @given(states())
-def test_tip_and_jacobians_are_the_textbooks(state):
+def test_tip_and_jacobians_equal_the_textbook(state):
     lengths, q, qd = state
     arm = fp.PlanarArm(lengths)
     scale = lengths.sum() * (1 + np.abs(qd).sum())
@@ -42,7 +42,7 @@ def test_jacobians_are_derivatives(state):
     np.testing.assert_allclose(arm.jacobian_dot(q, qd), change, atol=1e-8 * scale)
 
 
-def test_an_arm_describes_itself(arm):
+def test_an_arm_has_names_limits_and_repr(arm):
     assert arm.dof == 4
     assert repr(arm) == "PlanarArm(lengths=[1, 1, 1, 1])"
     assert arm.joint_names == ["joint_1", "joint_2", "joint_3", "joint_4"]

@@ -39,7 +39,7 @@ def mass_matrix(compiled, data) -> np.ndarray:
     return columns.T
 
 
-def test_the_model_is_the_arm():
+def test_the_model_equals_the_arm():
     compiled, data = model()
     tip = data.site("tip")
     J = np.zeros((6, 7))
@@ -67,7 +67,7 @@ def test_the_dynamics_are_plausible():
         np.testing.assert_allclose(believed.qfrc_bias, 1.02 * data.qfrc_bias, rtol=1e-9, atol=1e-12)
 
 
-def test_friction_holds_what_it_can():
+def test_friction_holds_a_joint_up_to_its_torque():
     compiled, data = model()
     data.qpos[:] = HOME
     mujoco.mj_forward(compiled, data)
@@ -108,7 +108,7 @@ def test_the_arm_settles_after_the_push(motion):
     assert last(motion, "push", "tip").max() < 1e-4
 
 
-def test_no_bound_is_broken_at_any_step(motion):
+def test_no_bound_is_exceeded_at_any_step(motion):
     position, velocity = motion.clearance()
     assert np.all(position > 0)
     assert np.all(velocity > 0)
@@ -124,19 +124,19 @@ def test_torques_do_not_chatter(motion):
 
 
 @pytest.mark.parametrize("name", ["too far", "too near"])
-def test_out_of_reach_the_arm_rests(motion, name):
+def test_unreachable_target_stops_the_arm(motion, name):
     tip = last(motion, name, "tip")
     assert tip.min() > 0.05  # The target is unreachable.
     assert np.ptp(tip) < 1e-4
     assert abs(last(motion, name, "qd")).max() < 0.03
 
 
-def test_within_reach_again_the_tip_is_there(motion):
+def test_reachable_target_is_reached_again(motion):
     assert last(motion, "home", "tip", 1.0).max() < 1e-3
     assert abs(last(motion, "home", "qd")).max() < 0.01
 
 
-def test_without_limits_bounds_are_broken():
+def test_without_limits_bounds_are_exceeded():
     none = np.full(7, 1e3)
     limits = fp.JointLimits(lower=-none, upper=none, velocity=none, acceleration=none)
     position, velocity = example.simulate(limits=limits, end=11.0).clearance()
@@ -144,18 +144,18 @@ def test_without_limits_bounds_are_broken():
     assert velocity.min() < -1
 
 
-def test_without_the_integral_an_error_stays():
+def test_without_the_integral_a_steady_state_error_remains():
     motion = example.simulate(integral={}, end=6.0)
     assert rms(motion.during("circle", "tip")) > 1e-3
     assert last(motion, "hold", "tip").min() > 5e-4
 
 
-def test_a_fifth_of_the_mass_missing_is_too_much():
+def test_a_mass_error_of_a_fifth_exceeds_the_tolerance():
     motion = example.simulate(inertia_error=-0.2, end=4.0)
     assert rms(motion.during("circle", "tip")) > 1e-3
 
 
-def test_two_models_are_the_robot():
+def test_two_models_equal_the_robot():
     compiled, data = model(placements=tray.placements())
     names = [compiled.joint(i).name for i in range(compiled.njnt)]
     assert names == tray.ROBOT.joint_names
@@ -168,7 +168,7 @@ def test_two_models_are_the_robot():
             np.testing.assert_allclose(data.site(f"{hand}_tip").xpos, T[:3, 3], rtol=0, atol=1e-9)
 
 
-def test_a_grasp_holds_by_torques():
+def test_torque_control_keeps_a_grasp():
     relative, tracking = tray.simulate(duration=4.0, hold=0.5)
     rms = np.sqrt(np.mean(relative**2, axis=0))
     assert rms[0] < 2e-3  # [m]

@@ -68,7 +68,7 @@ def test_joint_centring(case, gain):
     close(case.resolve(joint_centring=gain), case.resolve() + weighted_projector(case.J, case.W) @ z)
 
 
-def test_joint_centring_where_there_are_no_bounds():
+def test_joint_centring_has_no_effect_without_bounds():
     case = Case("FPBM", PLANAR, "position", 3)
     np.testing.assert_array_equal(case.resolve(joint_centring=2.0), case.resolve())
 
@@ -96,7 +96,7 @@ def furthest(run, of):
 
 
 @pytest.mark.parametrize("scheme", ["MVN", "Balanced"])
-def test_an_elbow_is_held_while_the_tip_goes_round(scheme):
+def test_an_elbow_stays_while_the_tip_moves_along_a_circle(scheme):
     options = {} if scheme == "MVN" else {"null_damping": 5.0}
     stack = fp.Stack(fp.PositionTask(name="tip"), fp.PositionTask("joint_3", name="elbow"))
     free = fp.simulate(PLANAR, CIRCLE, SCHEMES[scheme](4, **options), BENT, dt=1e-2)
@@ -106,7 +106,7 @@ def test_an_elbow_is_held_while_the_tip_goes_round(scheme):
     assert held.max_error() < 1e-7
 
 
-def test_an_axis_is_held_while_the_tip_goes_round():
+def test_an_axis_stays_while_the_tip_moves_along_a_circle():
     circle = fp.Circle(0.05, 5.0)
     scheme = fp.Balanced(0.6, np.ones(7), null_damping=5.0)
     free = fp.simulate(PANDA, circle, scheme, READY, dt=1e-2)
@@ -140,7 +140,7 @@ def test_joint_centring_in_a_motion():
 
 
 @pytest.mark.parametrize("name", sorted(SCHEMES))
-def test_singular_postures_are_damped_where_asked(name):
+def test_singular_postures_are_damped_on_request(name):
     straight, zero = np.zeros(4), np.zeros(4)
     asked = (straight, zero, PLANAR.forward(straight), [0.1, 0.0], [0.1, 0.0])
     with pytest.raises(fp.ResolutionError):
@@ -161,7 +161,7 @@ def test_a_damped_motion_is_complete():
     assert "damped" in str(run.status)
 
 
-def test_failed():
+def test_failed_statuses_are_listed():
     assert [status.name for status in fp.Status if fp.failed(status)] == ["SINGULAR", "TASK_LOST", "NOT_FINITE"]
 
 
@@ -172,7 +172,7 @@ def test_repr():
 
 
 @pytest.mark.parametrize("options", [{"joint_centring": 1.0}, {"manipulability_gain": 1.0}], ids=str)
-def test_what_needs_an_arm_cannot_do_with_kinematics(options):
+def test_arm_objectives_reject_kinematics(options):
     known = PANDA.kinematics(READY, 0 * READY)
     with pytest.raises(ValueError, match="need an arm"):
         fp.MVN(**options).resolve(known, READY, 0 * READY, known.tip, np.zeros(3))

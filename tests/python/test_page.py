@@ -91,7 +91,7 @@ def a_tracker(which, kind, limited, damping):
 @pytest.mark.parametrize("limited", [0, 1])
 @pytest.mark.parametrize("kind", range(5))
 @pytest.mark.parametrize("which", range(3))
-def test_the_page_makes_the_packages_ticks(page, which, kind, limited, damping):
+def test_ticks_of_the_page_equal_those_of_the_package(page, which, kind, limited, damping):
     tracker, path, targets = a_tracker(which, kind, limited, damping)
     begin(page, which, scheme=kind, limited=limited, damping=damping, alpha=0.6, feedback=5, weights=[*range(1, 8)])
     page.evaluate("fpbm.simulator.followPath(), fpbm.simulator.ticks(11000)")
@@ -163,7 +163,7 @@ def test_the_steps_of_a_visitor(page):
 
 
 @pytest.mark.parametrize("which", [0, 1])
-def test_let_it_drift(page, which):
+def test_undamped_self_motion_drifts(page, which):
     begin(page, which, damping=3)
     page.locator("#restart").click()
     run(page, 0.1)
@@ -176,7 +176,7 @@ def test_let_it_drift(page, which):
     assert page.evaluate("fpbm.stage.ghost.visible")
 
 
-def test_every_control(page):
+def test_every_control_keeps_the_limits(page):
     """After every choice during a motion, the arm continues to move within its limits."""
     rng = np.random.default_rng(0)
     page.evaluate("fpbm.pause()")
@@ -215,7 +215,7 @@ def test_keys_move_the_target(page):
     assert page.locator("#step-drag").get_attribute("class") == "done"
 
 
-def test_the_target_stays_in_sight(page):
+def test_the_target_stays_visible(page):
     """Dragged out of the window, and where a miss would turn the view of an arm in the plane."""
     begin(page, 0)
     page.evaluate("fpbm.show.restart()")
@@ -237,13 +237,13 @@ def test_the_target_stays_in_sight(page):
 
 
 @pytest.mark.parametrize(("kind", "seen"), [(0, "k"), (1, "kW"), (2, ""), (3, "W"), (4, "αkW")])
-def test_a_scheme_shows_what_it_takes(page, kind, seen):
+def test_a_scheme_shows_its_parameters(page, kind, seen):
     begin(page, 0, scheme=kind)
     rows = {"α": "#alpha-row", "k": "#feedback-row", "W": "#weights-row"}
     assert {name for name, row in rows.items() if page.locator(row).is_visible()} == set(seen)
 
 
-def test_words_about_an_arm_off_its_target(page):
+def test_a_remaining_tip_error_is_explained(page):
     """Without feedback, an initial tip error persists although the target is reachable."""
     begin(page, 0, scheme=2, damping=5, limited=1)
     page.evaluate("fpbm.show.restart()")
@@ -254,7 +254,7 @@ def test_words_about_an_arm_off_its_target(page):
     assert "no feedback" in page.locator("#status").inner_text()
 
 
-def test_frames_have_time_to_spare(page):
+def test_ticks_of_a_frame_are_fast_enough(page):
     begin(page, 1, scheme=4, limited=1, damping=2)
     page.evaluate("fpbm.simulator.followPath()")
     frame = """() => { const start = performance.now(); for (let k = 0; k < 100; ++k) fpbm.show.run(17);

@@ -246,12 +246,12 @@ peers = pytest.mark.parametrize(("peer", "tolerance"), [(pinocchio, 1e-12), (kdl
 
 @peers
 @pytest.mark.parametrize("name", [*URDFS, *PRESETS])
-def test_arms_are_the_peers(peer, tolerance, name):
+def test_arms_agree_with_the_peers(peer, tolerance, name):
     assert deviation(robot(name), peer(robot(name)), STATES) <= tolerance
 
 
 @peers
-def test_chains_of_mixed_joints_are_the_peers(peer, tolerance):
+def test_chains_of_mixed_joints_agree_with_the_peers(peer, tolerance):
     rng = np.random.default_rng(2)
     chains = [random_robot(rng) for _ in range(25)]
     assert {link.prismatic for chain in chains for link in chain.links} == {False, True}
@@ -290,7 +290,7 @@ OTHERS = {
 
 
 @pytest.mark.parametrize("name", PRESETS)
-def test_presets_are_the_others(name):
+def test_presets_agree_with_manipulapy(name):
     package = importlib.util.find_spec("ManipulaPy")
     if package is None:
         pytest.skip("ManipulaPy is not installed")

@@ -35,7 +35,7 @@ def test_overview() -> None:
     ]
 
 
-def test_overview_within_limits_has_what_they_did() -> None:
+def test_overview_within_limits_shows_their_effects() -> None:
     new = set(headings(a_run_within_limits())) - set(headings(a_run()))
     assert new == {"Joints on a bound", "Task scale", "Clearance"}
 
@@ -65,12 +65,12 @@ def test_each_panel_alone_is_as_wide_as_a_column(name: str) -> None:
     assert figure.get_figwidth() == 3.5
 
 
-def test_panels_in_the_order_asked_for() -> None:
+def test_panels_have_the_requested_order() -> None:
     assert headings(a_run(), "velocities", "error") == ["Joint velocities", "Tip error"]
     assert headings(a_run(), "velocities", "arm", "error") == ["Arm", "Joint velocities", "Tip error"]
 
 
-def test_panels_that_a_run_has_nothing_for_are_left_out() -> None:
+def test_panels_without_data_are_omitted() -> None:
     assert headings(a_run(), "scale", "error", "saturation", "axis_orientation_errors") == ["Tip error"]
 
 
@@ -84,12 +84,12 @@ def test_panels_that_a_run_has_nothing_for_are_left_out() -> None:
         ([], r"panels = \(\): no data in this run"),
     ],
 )
-def test_wrong_panels(names: list[str], message: str) -> None:
+def test_invalid_panels_are_rejected(names: list[str], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         a_run().plot(panels=names)
 
 
-def test_a_title_of_ones_own() -> None:
+def test_a_custom_title_is_shown() -> None:
     assert plot_run(a_run(), "two words", panels=["error"]).get_suptitle() == "two words"
 
 
@@ -121,7 +121,7 @@ def test_time_is_labelled_below_each_column_only() -> None:
 
 
 @pytest.mark.parametrize("theme", [LIGHT, DARK])
-def test_lines_can_be_told_apart_without_colours(theme: object) -> None:
+def test_lines_are_distinguishable_without_colours(theme: object) -> None:
     styles = [style for style, _ in zip(theme.styles(), range(28))]
     assert len(set(styles)) == 28
     first = styles[:7]
@@ -131,7 +131,7 @@ def test_lines_can_be_told_apart_without_colours(theme: object) -> None:
             assert dash != its or (light + 0.05) / (dark + 0.05) > 1.4
 
 
-def test_dark_is_dark() -> None:
+def test_dark_figures_have_dark_backgrounds() -> None:
     figure = a_run().plot(dark=True, panels=["velocities", "error"])
     assert luminance(figure.get_facecolor()) < 0.02
     (axes, _) = panels(figure).values()
@@ -144,7 +144,7 @@ def test_velocity_level_scheme() -> None:
     assert len(panels(run.plot())) == 7
 
 
-def test_stopped_run_is_plotted_up_to_there() -> None:
+def test_stopped_run_is_plotted_up_to_its_stop() -> None:
     run = a_stopped_run()
     assert not run.status
     figure = run.plot()
@@ -153,7 +153,7 @@ def test_stopped_run_is_plotted_up_to_there() -> None:
 
 
 @pytest.mark.parametrize("space", [False, True])
-def test_run_that_never_started(space: bool) -> None:
+def test_run_without_samples_is_plotted(space: bool) -> None:
     arm = fp.SerialArm.preset("panda") if space else fp.PlanarArm([1, 1])
     path = fp.Line([1, 0, 0] if space else [1, 0], 1.0)
     task = "pose" if space else "position"
@@ -162,7 +162,7 @@ def test_run_that_never_started(space: bool) -> None:
     run.plot().savefig(BytesIO(), format="png")
 
 
-def test_title_is_short_of_digits() -> None:
+def test_title_has_rounded_numbers() -> None:
     scheme = fp.MAN(null_damping=np.pi / 4)
     run = fp.simulate(fp.PlanarArm([1, 1, 1]), fp.Line([-0.3, 0.1], 1.0), scheme, [0.3, 0.4, 0.5], dt=0.01)
     assert "null_damping=0.78539" in repr(scheme)

@@ -81,7 +81,7 @@ def test_mp4(tmp_path: Path) -> None:
         ("a.gif", {"panels": ["velocity"]}, "panels: 'velocity' must be one of"),
     ],
 )
-def test_wrong_arguments(file: str, options: dict[str, Any], message: str, tmp_path: Path) -> None:
+def test_invalid_arguments_are_rejected(file: str, options: dict[str, Any], message: str, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=message):
         animate(a_run(), tmp_path / file, **options)
     assert not list(tmp_path.iterdir())
@@ -122,7 +122,7 @@ def test_the_old_file_stays_if_writing_fails(suffix: str, tmp_path: Path, monkey
     assert [file.name for file in tmp_path.iterdir()] == [file.name]
 
 
-def test_errors_of_ffmpeg_are_passed_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_errors_of_ffmpeg_are_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(animation, "_ffmpeg", lambda: shutil.which("cat"))
     with pytest.raises(OSError, match=r"^ffmpeg: .*cat: "):
         animation.write_frames(tmp_path / "a.mp4", np.zeros((3, 2, 2, 3), np.uint8), 25.0)

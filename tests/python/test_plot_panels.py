@@ -54,7 +54,7 @@ def test_joints(name: str, array: str, label: str) -> None:
     assert names == ["rail (slides)", *run.arm.joint_names[1:]]
 
 
-def test_bounds_that_a_joint_comes_near() -> None:
+def test_bounds_are_drawn_near_a_joint() -> None:
     run = a_run_within_limits()
     limits = run.options["limits"]
     (near,) = bounds(drawn(run, "positions"))
@@ -63,7 +63,7 @@ def test_bounds_that_a_joint_comes_near() -> None:
     assert bounds(drawn(run, "accelerations")) == []  # They are infinite.
 
 
-def test_bounds_that_joints_share_are_in_ink() -> None:
+def test_common_bounds_of_joints_have_the_ink_colour() -> None:
     run, infinite = a_run(), np.full(4, np.inf)
     upper = np.full(4, run.q.max())
     limits = fp.JointLimits(lower=upper - 100.0, upper=upper, velocity=infinite, acceleration=infinite)
@@ -123,12 +123,12 @@ def test_null_space_velocity() -> None:
     np.testing.assert_allclose(drawn(run, "null_space").lines[0].get_ydata(), expected, atol=1e-12)
 
 
-def test_minimum_norm_velocities_have_no_part_in_the_null_space() -> None:
+def test_minimum_norm_velocities_have_no_null_space_component() -> None:
     run = fp.simulate(fp.PlanarArm([1, 1, 1]), fp.Line([-0.3, 0.1], 1.0), fp.MVN(), [0.3, 0.4, 0.5], dt=0.01)
     np.testing.assert_allclose(plot.null_space_velocities(run), 0.0, atol=1e-14)
 
 
-def test_in_a_singular_posture_only_what_moves_the_tip_is_taken_away() -> None:
+def test_a_singular_posture_keeps_its_null_space_velocity() -> None:
     run = a_run()
     outstretched = replace(run, q=np.zeros((1, 4)), qd=np.array([[1.0, 0.0, 0.0, -1.0]]))
     J = run.arm.jacobian(np.zeros(4))[1:]  # The other row is zero.
@@ -152,7 +152,7 @@ def test_clearance_and_its_margin() -> None:
     assert drawn(replace(run, clearance=run.clearance - 0.1), "clearance").get_ylim()[0] < 0
 
 
-def test_saturation_is_a_bar_for_each_time_on_a_bound() -> None:
+def test_saturation_has_a_bar_for_each_time_on_a_bound() -> None:
     run = a_run_within_limits()
     bars = [
         path.get_extents() for collection in drawn(run, "saturation").collections for path in collection.get_paths()

@@ -82,13 +82,13 @@ def test_joint_axes_of_a_planar_arm() -> None:
 
 
 @pytest.mark.parametrize("name", some_arms())
-def test_tip_axes_are_those_of_the_tip(name: str) -> None:
+def test_tip_axes_equal_the_rotation_of_the_tip(name: str) -> None:
     arm = some_arms()[name]
     q = np.random.default_rng(7).uniform(-1.5, 1.5, arm.dof)
     np.testing.assert_allclose(frames_of(arm, q, "tip"), arm.forward(q), atol=1e-14)
 
 
-def test_tip_axes_of_a_planar_arm_go_on_from_its_last_link() -> None:
+def test_tip_axes_of_a_planar_arm_continue_its_last_link() -> None:
     arm, q = fp.PlanarArm([1.0, 0.5, 0.25]), np.array([0.1, -2.0, 0.5])
     R = frames_of(arm, q, "tip")[:2, :2]
     *_, before, tip = joint_points(arm, q)

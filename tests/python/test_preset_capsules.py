@@ -142,7 +142,7 @@ def solid(coal: Any, urdf: Path, link: str, kind: str, frame: Array) -> tuple[An
 
 @needs_clone
 @pytest.mark.parametrize("name", PRESETS)
-def test_links_that_never_meet(name: str) -> None:
+def test_listed_links_never_collide(name: str) -> None:
     """By branch and bound: from the middle of a box of joint positions, no vertex moves farther than levers allow."""
     coal = pytest.importorskip("coal")
     tool = load_tool()

@@ -46,7 +46,7 @@ def test_eighteen_cases_agree_with_the_independent_solution(done: Reproduction) 
     assert done.agrees
 
 
-def test_cases_agree_with_print(done: Reproduction) -> None:
+def test_cases_agree_with_the_printed_values(done: Reproduction) -> None:
     for result in done.results:
         if result.from_printed is not None:
             assert result.from_printed < (6e-6 if result.case.fpbm else 6e-4)
@@ -54,7 +54,7 @@ def test_cases_agree_with_print(done: Reproduction) -> None:
     assert {r.case.figure: r.case.misprinted_joint for r in done.results if r.case.misprinted_joint} == {5: 4, 8: 2}
 
 
-def test_a_disagreement_is_noticed(paper: cases.Paper) -> None:
+def test_a_disagreement_is_detected(paper: cases.Paper) -> None:
     case = paper.figure(2)
     run = paper.simulate(case.path, case.scheme, q0=paper.q0 + 1e-6)
     assert not Reproduction([cases.Result(case, run)], [], [], [], []).agrees
@@ -133,7 +133,7 @@ def test_claims(done: Reproduction) -> None:
     assert "the joints move by 0.0043 rad" in cure
 
 
-def test_circles_one_after_another_share_their_ends(paper: cases.Paper, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_successive_circles_have_common_ends(paper: cases.Paper, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(claims, "CIRCLES", 3)
     runs = claims.chained(paper, paper.figure(2).scheme)
     assert len(runs) == 3
@@ -164,7 +164,7 @@ def test_second_run_overwrites_its_own_files_only(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("one_figure")
-def test_interrupted_run_leaves_whole_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_interrupted_run_leaves_complete_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "fig2.png").write_text("old")
 
     def write_half(file: Path, content: bytes) -> int:

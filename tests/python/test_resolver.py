@@ -208,13 +208,13 @@ def test_bad_arguments_of_resolve(arm, q0, change, words):
         fp.FPBM(0.6, [1, 2, 3, 4], 1, 1).resolve(arm, **arguments)
 
 
-def test_a_scheme_for_another_arm(q0):
+def test_a_scheme_for_another_arm_is_rejected(q0):
     with pytest.raises(ValueError, match="weights has 4 entries: must have 3"):
         fp.WMVN([1, 2, 3, 4]).resolve(fp.PlanarArm([1, 1, 1]), q0[:3], q0[:3], [1, 1], [0, 0])
 
 
 @pytest.mark.parametrize("scheme", [fp.MVN(), fp.MAN(), fp.FPBM(0.6, [1, 2, 3, 4], 1, 1)], ids=repr)
-def test_a_singular_posture_is_refused_with_advice(arm, scheme):
+def test_a_singular_posture_is_rejected_with_advice(arm, scheme):
     with pytest.raises(fp.ResolutionError, match=r"posture is singular.*Choose another start") as caught:
         scheme.resolve(arm, np.zeros(4), np.zeros(4), [4, 0], [0.1, 0], [0, 0])
     assert caught.value.status is fp.Status.SINGULAR
@@ -225,7 +225,7 @@ SCHEMES = [fp.MVN(k=2.0), fp.MAN(), fp.FPBM(0.6, np.ones(7), 10, 25, null_dampin
 
 @pytest.mark.parametrize("scheme", SCHEMES, ids=lambda scheme: scheme.kind)
 @pytest.mark.parametrize("task", ["position", "pose"])
-def test_many_states_are_each_alone(scheme, task):
+def test_many_states_are_resolved_like_each_alone(scheme, task):
     arm, rng, k = IN_SPACE[0], np.random.default_rng(6), 50
     q, qd = rng.uniform(-1.5, 1.5, (2, k, 7))
     x = np.array([arm.kinematics(each, each, task=task).tip for each in rng.uniform(-1.5, 1.5, (k, 7))])
@@ -251,7 +251,7 @@ def test_a_result_is_written_to_out(states):
     assert out.tobytes() == scheme.resolve(*arguments).tobytes()
 
 
-def test_of_kinematics_of_ones_own_too(arm, q0):
+def test_a_result_of_custom_kinematics_is_written_to_out(arm, q0):
     kinematics, out = arm.kinematics(q0, q0), np.empty(4)
     known = fp.Kinematics(kinematics.tip, kinematics.J, kinematics.Jd)
     assert fp.MAN().resolve(known, q0, q0, [1, 1], [0, 0], [0, 0], out=out) is out
@@ -269,12 +269,12 @@ def test_of_kinematics_of_ones_own_too(arm, q0):
         np.broadcast_to(0.0, 4),
     ],
 )
-def test_out_that_cannot_be_written_is_refused(arm, q0, out):
+def test_invalid_out_is_rejected(arm, q0, out):
     with pytest.raises(ValueError, match=r"out: must be a writeable, C-contiguous array of float64 of shape \(4,\)"):
         fp.MVN().resolve(arm, q0, q0, [1, 1], [0, 0], out=out)
 
 
-def test_a_scheme_serves_arms_of_several_sizes_in_turn():
+def test_a_scheme_resolves_arms_of_several_sizes():
     one = fp.MVN(k=1)
     for joints in (4, 3, 4, 7, 3):
         arm, q = fp.PlanarArm(np.ones(joints)), np.linspace(0.2, 0.5, joints)
@@ -310,14 +310,14 @@ def test_bad_arguments_of_many_states(change, words):
         fp.MAN().resolve(IN_SPACE[0], **{**good, **change}, task="pose")
 
 
-def test_of_many_states_the_singular_one_is_named(arm, q0):
+def test_the_singular_state_of_many_is_named(arm, q0):
     q = np.array([q0, q0, 0 * q0, q0])
     with pytest.raises(fp.ResolutionError, match=r"state 2: .*posture is singular") as caught:
         fp.MVN().resolve(arm, q, 0 * q, [1, 1], [0, 0])
     assert caught.value.status is fp.Status.SINGULAR
 
 
-def test_kinematics_of_ones_own(q0):
+def test_custom_kinematics_are_resolved(q0):
     """Planar, in space or a pose: by the shape of the tip, and the task where that does not tell."""
     J = np.random.default_rng(1).uniform(-1, 1, (3, 4))
     qd = np.ones(4)

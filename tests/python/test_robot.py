@@ -115,7 +115,7 @@ def write(tmp_path: Path) -> Callable[[str], Path]:
     return write
 
 
-def test_random_trees_are_pinocchio_s(write) -> None:
+def test_random_trees_agree_with_pinocchio(write) -> None:
     rng = np.random.default_rng(1)
     worst, compared = 0.0, 0
     while compared < TREES:
@@ -147,7 +147,7 @@ ROBOTS = Path(pin.__file__).parents[4] / "share" / "example-robot-data" / "robot
         ("ur_description/urdf/ur5_robot.urdf", 6, None),
     ],
 )
-def test_robots_are_pinocchio_s(urdf: str, dof: int, tips: list[str] | None) -> None:
+def test_robots_agree_with_pinocchio(urdf: str, dof: int, tips: list[str] | None) -> None:
     file = ROBOTS / urdf
     robot = fp.Robot.from_urdf(file, base="fixed", tips=tips)
     assert robot.dof == dof
@@ -155,7 +155,7 @@ def test_robots_are_pinocchio_s(urdf: str, dof: int, tips: list[str] | None) -> 
     assert max(expect_pinocchio(file.read_text(), robot, rng, list(robot.frames)) for _ in range(5)) < 1e-12
 
 
-def test_it_is_data(write) -> None:
+def test_a_robot_can_be_pickled(write) -> None:
     robot = fp.Robot.from_urdf(write(random_urdf(np.random.default_rng(2), 8)))
     again = pickle.loads(pickle.dumps(robot))
     assert again == robot
@@ -234,7 +234,7 @@ def test_planar_base(write) -> None:
         ),
     ],
 )
-def test_what_is_wrong_is_named(text: str, options: dict, message: str, write) -> None:
+def test_invalid_arguments_are_named(text: str, options: dict, message: str, write) -> None:
     with pytest.raises(ValueError, match=message):
         fp.Robot.from_urdf(write(text), **options)
 

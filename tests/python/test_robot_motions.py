@@ -90,7 +90,7 @@ def test_each_task_follows_its_path(run: fp.Run) -> None:
     assert (np.abs(np.diff(run.qd, axis=0)) / 1e-3 <= limits.acceleration + 1e-6).all()
 
 
-def test_the_ticks_are_the_trackers(run: fp.Run) -> None:
+def test_ticks_equal_those_of_the_tracker(run: fp.Run) -> None:
     tracker = fp.Tracker(ROBOT, SCHEME, READY, stack=two_hands())
     followers = {name: tracker.follow(path, task=name) for name, path in PATHS.items()}
     for k in range(300):
@@ -100,7 +100,7 @@ def test_the_ticks_are_the_trackers(run: fp.Run) -> None:
         np.testing.assert_array_equal(run.scales[k], tick.scales)
 
 
-def test_task_says_what_x_is() -> None:
+def test_task_selects_the_meaning_of_x() -> None:
     """`task` does not change the motion."""
     stack = two_hands()
     right = fp.simulate(ROBOT, PATHS, SCHEME, READY, stack=stack, task="right", dt=0.01)
@@ -113,7 +113,7 @@ def test_task_says_what_x_is() -> None:
     assert alone.frames["left"][:, :3, 3].std(axis=0).max() < 1e-9  # Has no path.
 
 
-def test_a_grasp_is_led_as_seen_from_the_other_hand() -> None:
+def test_a_grasp_follows_a_path_relative_to_the_other_hand() -> None:
     stack = fp.Stack(fp.RelativePoseTask("left_tip", "right_tip", name="grasp"), fp.PoseTask("right_tip", name="right"))
     q0 = np.add(READY, np.linspace(-0.2, 0.2, 14))
     paths = {"grasp": fp.Line([0, 0, -0.1], 1), "right": fp.Line([0, 0, 0.1], 1).with_rotation([0, 0, 0.3])}
@@ -128,7 +128,7 @@ def test_a_grasp_is_led_as_seen_from_the_other_hand() -> None:
     np.testing.assert_allclose(target, seen, atol=1e-12)
 
 
-def test_jacobians_are_those_of_the_led_tasks() -> None:
+def test_jacobians_equal_those_of_the_tasks_with_paths() -> None:
     """By differences of the points of the tasks."""
     offset = np.eye(4)
     offset[:3, 3] = [0.1, -0.2, 0.3]
@@ -165,7 +165,7 @@ def test_jacobians_are_those_of_the_led_tasks() -> None:
         ({"dt": 0.3, "path": PATHS}, "dt = 0.3: must be a divisor of duration = 2"),
     ],
 )
-def test_what_is_wrong_is_said(change: dict[str, object], words: str) -> None:
+def test_invalid_arguments_are_rejected(change: dict[str, object], words: str) -> None:
     how = {"path": PATHS["left"], "stack": two_hands(), "task": "left" if "path" not in change else None, **change}
     path = how.pop("path")
     for move in (fp.track, fp.simulate):
@@ -173,7 +173,7 @@ def test_what_is_wrong_is_said(change: dict[str, object], words: str) -> None:
             move(ROBOT, path, SCHEME, READY, **how)
 
 
-def test_sweeps_refuse_robots() -> None:
+def test_sweeps_reject_robots() -> None:
     with pytest.raises(fp.ParameterError, match="must be an arm; simulate"):
         fp.sweep(ROBOT, PATHS["left"], SCHEME, READY, stack=two_hands(), task="left")
 
@@ -319,7 +319,7 @@ def test_a_job_of_a_robot(urdf: Path) -> None:
         (JOB[JOB.index("[[task]]") :], "", "task: is missing: a robot needs"),
     ],
 )
-def test_what_is_wrong_with_a_job(urdf: Path, old: str, new: str, words: str) -> None:
+def test_invalid_jobs_are_rejected(urdf: Path, old: str, new: str, words: str) -> None:
     pytest.importorskip("tomlkit")
     from fpbm_cpp.job import JobError, prepare, read_job
 
@@ -348,7 +348,7 @@ def test_frames_on_the_command_line(urdf: Path, count: int) -> None:
     assert motion.path == (circle if count == 1 else dict.fromkeys(tools, circle))
 
 
-def test_the_command_line_says_what_is_wrong(urdf: Path) -> None:
+def test_the_command_line_reports_invalid_options(urdf: Path) -> None:
     cli, testing = pytest.importorskip("fpbm_cpp.cli"), pytest.importorskip("click.testing")
     for words, line in [
         (["track", "robot.urdf", "--task", "tol"], "--task = 'tol': must be a frame"),

@@ -66,7 +66,7 @@ RUNS = {
 
 
 @pytest.mark.parametrize("name", RUNS)
-def test_a_run_comes_back_and_is_made_again(name, tmp_path, q0):
+def test_a_run_is_loaded_and_replayed(name, tmp_path, q0):
     arm, path, scheme, start, options = RUNS[name]
     run = fp.simulate(arm, path, scheme, q0 if start is None else start, dt=0.01, **options)
     run.save(tmp_path / "run.npz")
@@ -85,7 +85,7 @@ def test_a_run_comes_back_and_is_made_again(name, tmp_path, q0):
 
 @pytest.mark.parametrize("scheme", [fp.MVN(k=5), fp.FPBM(0.6, [1, 2, 3, 4], 10, 25, null_damping=2)], ids=repr)
 @pytest.mark.parametrize("limits", [None, LIMITS], ids=["free", "limits"])
-def test_a_run_within_limits_comes_back_and_is_made_again(scheme, limits, tmp_path, q0):
+def test_a_run_within_limits_is_loaded_and_replayed(scheme, limits, tmp_path, q0):
     options = {"dt": 0.01, "hold": 0.2, "limits": limits, "error_bound": 1 / 3, "stall_time": np.inf}
     run = fp.track(FLAT, fp.Circle(0.45, 1.0), scheme, q0, **options)
     run.save(tmp_path / "run.npz")
@@ -97,25 +97,25 @@ def test_a_run_within_limits_comes_back_and_is_made_again(scheme, limits, tmp_pa
     assert back.replay() == run
 
 
-def test_a_run_from_before_null_damping_is_made_again(tmp_path, q0):
+def test_a_run_without_null_damping_is_replayed(tmp_path, q0):
     run = fp.track(FLAT, fp.Circle(0.45, 1.0), fp.MAN(), q0, dt=0.01, limits=LIMITS, null_damping=0)
     options = {name: value for name, value in run.options.items() if name != "null_damping"}
     replace(run, options=options).save(tmp_path / "run.npz")
     assert bits(fp.load(tmp_path / "run.npz").replay()) == bits(run)
 
 
-def test_motions_of_a_sweep_are_made_again(q0):
+def test_motions_of_a_sweep_are_replayed(q0):
     sweep = fp.sweep(FLAT, fp.Circle(0.2, 1.0), [fp.MVN(), fp.MAN()], [q0, q0 + 0.1], dt=0.01, hold=0.1, motions=True)
     for run in sweep.motions.ravel():
         assert run.replay() == run
 
 
-def test_a_run_that_does_not_say_how_it_was_made(run):
+def test_a_run_without_options_is_not_replayed(run):
     with pytest.raises(ValueError, match=r"options = {}: must have the arguments of simulate"):
         replace(run, options={}).replay()
 
 
-def test_equal_is_all_of_it(run, q0):
+def test_equal_runs_have_equal_bits(run, q0):
     assert run == replace(run, q=run.q.copy(), provenance={"note": "elsewhere"})
     changed = run.q.copy()
     changed[50, 2] = np.nextafter(changed[50, 2], 9)
@@ -164,7 +164,7 @@ def test_numpy_reads_the_arrays(run, tmp_path):
     assert meta["status"]["code"] == "OK"
 
 
-def test_a_file_is_replaced_whole_or_not_at_all(run, tmp_path, monkeypatch):
+def test_a_file_is_replaced_atomically(run, tmp_path, monkeypatch):
     file = tmp_path / "run"  # By this very name: no suffix is added.
     run.save(str(file))
     before = file.read_bytes()
@@ -182,7 +182,7 @@ def test_a_file_is_replaced_whole_or_not_at_all(run, tmp_path, monkeypatch):
     assert fp.load(file).provenance["note"] == "other"
 
 
-def test_another_process_reads_it_and_makes_it_again(run, tmp_path):
+def test_another_process_loads_and_replays_a_run(run, tmp_path):
     run.save(tmp_path / "run.npz")
     code = "import sys, fpbm_cpp as fp; run = fp.load(sys.argv[1]); sys.exit(run.replay() != run)"
     subprocess.run([sys.executable, "-c", code, tmp_path / "run.npz"], check=True)
@@ -198,7 +198,7 @@ def test_paths(name, run, tmp_path):
 @pytest.mark.parametrize(
     "rotation", [0.1 + 0.2, np.float64(0.3), np.float32(0.3), 1, (0, 0, 1 / 3), np.array([0.1, 0, 0])], ids=repr
 )
-def test_rotations_keep_their_kind(rotation, run, tmp_path):
+def test_rotations_keep_their_type(rotation, run, tmp_path):
     planar = np.ndim(rotation) == 0
     path = (fp.Line([1, 0], 1.0) if planar else fp.Line([1, 0, 0], 1.0)).with_rotation(rotation)
     expect_same(path, through_file(run, tmp_path, path=path).path)
@@ -243,7 +243,7 @@ def test_numbers_are_exact(numbers):
     assert back.lower.tobytes() == np.array(numbers).tobytes()
 
 
-def test_what_other_libraries_have_for_arrays(q0, run, tmp_path):
+def test_arrays_of_other_libraries_are_saved(q0, run, tmp_path):
     pandas = pytest.importorskip("pandas")
     here = fp.simulate(FLAT, fp.Circle(0.2, 1.0), fp.WMVN(pandas.Series([1.0, 2, 3, 1 / 3])), q0, dt=0.01)
     there = fp.simulate(FLAT, fp.Circle(0.2, 1.0), through_file(here, tmp_path).scheme, q0, dt=0.01)
@@ -279,7 +279,7 @@ def rewritten(file, change=None, **members):
     np.savez(file, **{name: array for name, array in arrays.items() if array is not None})
 
 
-def test_a_file_from_before_there_were_clearances(tmp_path, q0):
+def test_a_file_without_a_clearance_is_loaded(tmp_path, q0):
     run = fp.track(FLAT, fp.Circle(0.45, 1.0), fp.MVN(k=5), q0, dt=0.01, limits=LIMITS)
     run.save(tmp_path / "run.npz")
     options = {name: to_table(value) for name, value in run.options.items() if name != "clearance"}
@@ -293,7 +293,7 @@ def test_a_file_from_before_there_were_clearances(tmp_path, q0):
 
 
 @pytest.mark.parametrize("what", NO_PATHS)
-def test_a_file_that_names_anything_else_is_refused(what, run, tmp_path):
+def test_a_file_with_an_unknown_path_is_rejected(what, run, tmp_path):
     data, words = NO_PATHS[what]
     run.save(tmp_path / "run.npz")
     rewritten(tmp_path / "run.npz", {"path": data})
@@ -309,7 +309,7 @@ def test_a_file_that_names_anything_else_is_refused(what, run, tmp_path):
     ],
     ids=["arm"],
 )
-def test_a_file_that_names_other_files_is_refused(table, run, tmp_path):
+def test_a_file_that_names_other_files_is_rejected(table, run, tmp_path):
     run.save(tmp_path / "run.npz")
     rewritten(tmp_path / "run.npz", table)
     with pytest.raises(ValueError, match="kind = 'urdf': a run's file must not name another file"):
@@ -337,7 +337,7 @@ def test_a_file_that_names_other_files_is_refused(table, run, tmp_path):
         ({}, {"saturated": np.zeros((101, 4))}, r"saturated has shape \(101, 4\) and type float64"),
     ],
 )
-def test_a_file_with_something_wrong_is_refused(change, members, words, run, tmp_path):
+def test_an_invalid_file_is_rejected(change, members, words, run, tmp_path):
     run.save(tmp_path / "run.npz")
     rewritten(tmp_path / "run.npz", change, **members)
     with pytest.raises(ValueError, match=words):
@@ -355,7 +355,7 @@ def test_nothing_in_a_file_is_executed(tmp_path):
     assert os.listdir(tmp_path) == ["run.npz"]
 
 
-def test_a_file_that_is_no_run_is_refused(run, tmp_path):
+def test_a_file_that_is_not_a_run_is_rejected(run, tmp_path):
     file = tmp_path / "run.npz"
     run.save(file)
     whole = file.read_bytes()

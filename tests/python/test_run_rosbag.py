@@ -99,7 +99,7 @@ def test_ros_2_humble_can_read_it(tmp_path):
 
 
 @pytest.mark.parametrize("kind", ["folder", "file", "dangling link"])
-def test_what_is_there_is_left_alone(kind, tmp_path):
+def test_an_existing_bag_is_not_changed(kind, tmp_path):
     bag = tmp_path / "bag"
     if kind == "folder":
         bag.mkdir()
@@ -113,7 +113,7 @@ def test_what_is_there_is_left_alone(kind, tmp_path):
 
 
 @pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt()], ids=repr)
-def test_a_bag_is_written_whole_or_not_at_all(error, tmp_path, monkeypatch):
+def test_a_bag_is_written_atomically(error, tmp_path, monkeypatch):
     from rosbags.rosbag2 import Writer
 
     write, count = Writer.write, []
@@ -130,7 +130,7 @@ def test_a_bag_is_written_whole_or_not_at_all(error, tmp_path, monkeypatch):
     assert os.listdir(tmp_path) == []
 
 
-def test_a_run_of_no_sample_is_no_bag(tmp_path):
+def test_a_run_without_samples_is_rejected(tmp_path):
     with pytest.raises(ValueError, match="no samples"):
         RUNS["of no sample"]().to_rosbag(tmp_path / "bag")
     assert os.listdir(tmp_path) == []

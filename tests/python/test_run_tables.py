@@ -114,7 +114,7 @@ def test_numpy_reads_csv(tmp_path):
     assert run.saturated.any()
 
 
-def test_csv_is_written_whole_or_not_at_all(tmp_path, monkeypatch):
+def test_csv_is_replaced_atomically(tmp_path, monkeypatch):
     file = tmp_path / "run.csv"
     file.write_text("what was there")
     with monkeypatch.context() as patch:
@@ -173,7 +173,7 @@ def test_xarray(run):
     assert data.attrs["scheme"] == repr(run.scheme)
 
 
-def test_quaternions_are_the_rotations_and_never_jump():
+def test_quaternions_are_continuous_and_equal_the_rotations():
     rng = np.random.default_rng(0)
     axis = rng.normal(size=3)
     vectors = np.linspace(0, 4 * np.pi, 500)[:, None] * axis / np.linalg.norm(axis)

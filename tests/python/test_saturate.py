@@ -102,7 +102,7 @@ def test_every_scale_is_the_largest(draw):
     assert missed <= 1e-3 * levels
 
 
-def test_the_test_of_sns_ik():
+def test_problems_of_sns_ik_are_solved():
     """A task that is feasible with a known scale, and a posture below it, as in sns_ik's basic_with_secondary_goal.
 
     There the scale s is that of the acceleration xdd alone, in J u + drift = s xdd: s is one more joint, from 0 to 1,
@@ -135,7 +135,7 @@ def test_the_test_of_sns_ik():
     assert error <= 1e-10
 
 
-def test_one_level_within_the_bounds_is_the_pseudoinverse():
+def test_one_level_within_the_bounds_equals_the_pseudoinverse():
     rng = np.random.default_rng(2)
     J, b = rng.normal(size=(3, 7)), rng.normal(size=3)
     found = fp.saturate([(J, b)], np.full(7, -np.inf), np.full(7, np.inf))
@@ -144,7 +144,7 @@ def test_one_level_within_the_bounds_is_the_pseudoinverse():
     assert not found.saturated.any()
 
 
-def test_joints_with_little_range_or_none_leave_the_task_to_others():
+def test_joints_without_range_do_not_scale_the_task():
     rng = np.random.default_rng(3)
     for _ in range(50):
         lower, upper = -rng.uniform(0.5, 1, 6), rng.uniform(0.5, 1, 6)
@@ -160,7 +160,7 @@ def test_joints_with_little_range_or_none_leave_the_task_to_others():
         assert found.u[1] == 0
 
 
-def test_three_tasks_by_hand():
+def test_three_tasks_have_the_scales_of_a_hand_calculation():
     """The first level is scaled by one half, the second uses the remaining range, the third contradicts the first."""
     found = fp.saturate(
         [([[1, 0, 0]], [2]), ([[0, 1, 1]], [1.5]), ([[1, 0, 0]], [0])], lower=[-1, -0.5, -1], upper=[1, 0.5, 1]
@@ -184,7 +184,7 @@ def test_three_tasks_by_hand():
         ({"unit": [1, 0]}, r"unit\[1\] = 0: must be positive"),
     ],
 )
-def test_wrong_arguments_are_named(changed, message):
+def test_invalid_arguments_are_named(changed, message):
     arguments = {"levels": [([[1, 0]], [1])], "lower": [-1, -1], "upper": [1, 1]} | changed
     with pytest.raises(fp.ParameterError, match=message):
         fp.saturate(**arguments)

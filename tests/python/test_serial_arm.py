@@ -59,7 +59,7 @@ def test_jacobians_are_derivatives(seed):
     np.testing.assert_array_equal(arm.jacobian_dot(q, qd), Jd[:3])
 
 
-def test_an_arm_describes_itself():
+def test_an_arm_has_names_limits_and_repr():
     assert PANDA.dof == 7
     assert PANDA.joint_names[0] == "panda_joint1"
     assert str(PANDA) == "<SerialArm of 7 joints, panda_joint1 to panda_joint7>"
@@ -75,7 +75,7 @@ def test_an_arm_describes_itself():
 @pytest.mark.parametrize("task", ["position", "pose"])
 @pytest.mark.parametrize("level", ["velocity", "acceleration"])
 @pytest.mark.parametrize("name", PRESETS)
-def test_every_preset_runs_in_a_control_loop_as_it_comes(name, level, task):
+def test_every_preset_runs_in_a_control_loop_with_default_limits(name, level, task):
     pytest.importorskip("tomlkit", reason="needs the command line's extras")
     from fpbm_cpp.job.motion import READY
 
@@ -94,7 +94,7 @@ def test_every_preset_runs_in_a_control_loop_as_it_comes(name, level, task):
     assert np.linalg.norm(tick.error) < 1e-3
 
 
-def test_followers_are_no_degrees_of_freedom():
+def test_followers_are_not_degrees_of_freedom():
     arm = fp.SerialArm([fp.Joint(name="a"), fp.Joint(name="b", mimic=(0, 2.0, 0.1)), fp.Joint(name="c", lower=-1)])
     assert arm.dof == 2
     assert arm.joint_names == ["a", "c"]
@@ -125,7 +125,7 @@ def test_followers_keep_their_bounds(seed):
     np.testing.assert_allclose(np.min(room, axis=0)[2:], 0, atol=1e-12)  # Not narrower than necessary.
 
 
-def test_a_joint_without_room_is_named():
+def test_a_joint_without_range_is_named():
     joints = [fp.Joint(name="a", lower=0, upper=1), fp.Joint(name="b", lower=3, upper=4, mimic=(0, 2.0, 0.5))]
     with pytest.raises(ValueError, match=r"joint 'a'.lower = 1.25: must be below upper = 1 for its mimic joints"):
         fp.SerialArm(joints)

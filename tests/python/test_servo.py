@@ -72,7 +72,7 @@ def until(check):
 
 
 @pytest.mark.parametrize(("which", "task"), [("panda", "pose"), ("panda", "position"), ("planar", "pose")])
-def test_a_handle_stands_for_a_target(which, task):
+def test_a_handle_sets_a_target(which, task):
     with a_servo(which, task) as servo:
         np.testing.assert_allclose(servo.target, servo.tip, atol=1e-12)
         x = servo.target
@@ -89,7 +89,7 @@ def test_a_handle_stands_for_a_target(which, task):
                 servo.target = lie
 
 
-def test_it_says_how_the_arm_fares(servo):
+def test_the_status_of_the_arm_is_reported(servo):
     until(lambda: "the whole task is executed" in says(servo))
     servo.target = [8.0, 3.0]
     until(lambda: "a lower level has stopped. The tip follows as fast as the joint limits admit." in says(servo))
@@ -104,7 +104,7 @@ def test_it_says_how_the_arm_fares(servo):
     assert np.nanmax(shown[1:], axis=1) == pytest.approx(100.0, abs=70.0)
 
 
-def test_stop_go_on_and_back(servo):
+def test_stop_resume_and_restart(servo):
     servo.target = [1.0, 2.0]
     until(lambda: servo.tick and np.abs(servo.tick.qd).max() > 0.1)
     servo.stop()
@@ -137,7 +137,7 @@ def test_the_page_chooses_schemes(servo):
     assert servo.scheme == fpbm(4)
 
 
-def test_without_bounds_there_is_nothing_to_keep():
+def test_missing_bounds_are_reported():
     with a_servo(limits=None) as servo:
         servo.target = [1.0, 2.0]
         until(lambda: np.abs(servo.tip - [1.0, 2.0]).max() < 1e-3)
@@ -145,7 +145,7 @@ def test_without_bounds_there_is_nothing_to_keep():
         assert "speed (no bound)" in str(servo._chart._plot.series)
 
 
-def test_it_keeps_clear_of_what_is_dragged_to_it():
+def test_the_arm_avoids_a_dragged_obstacle():
     links = [fp.Capsule(i, [0, 0, 0], [1, 0, 0], 0.05, f"link {i}") for i in range(1, 5)]
     around = [fp.Capsule(0, [2.2, 0.3, -1], [2.2, 0.3, 1], 0.1, "post"), fp.HalfSpace([0, 1, 0], -2, name="wall")]
     with a_servo(clearance=fp.Clearance(links, around)) as servo:
@@ -240,7 +240,7 @@ def test_targets_of_a_stack_are_a_dictionary(stacked):
         servo.target = {"tip": [1, 2]}
 
 
-def test_it_says_how_each_task_and_level_fares(stacked):
+def test_the_status_of_each_task_and_level_is_reported(stacked):
     until(lambda: "the whole task is executed" in says(stacked))
     levels = ["upright, place", "elbow", "turn", "home"]
     for text in (*(f"scale of {level}" for level in levels), *(f"from {name} to handle" for name in stacked.tip)):
@@ -254,7 +254,7 @@ def test_it_says_how_each_task_and_level_fares(stacked):
     assert len(stacked._chart._plot.data) == len(labels)
 
 
-def test_schemes_beside_a_stack_have_no_gains(stacked):
+def test_schemes_with_a_stack_have_no_gains(stacked):
     controls = stacked._controls
     target = stacked.target
     for kind in ("FPBM", "MVN", "WMVN", "Balanced"):
@@ -267,7 +267,7 @@ def test_schemes_beside_a_stack_have_no_gains(stacked):
         np.testing.assert_array_equal(stacked.target[name], x)
 
 
-def test_it_keeps_pace_with_the_clock(servo):
+def test_simulated_time_keeps_pace_with_the_clock(servo):
     until(lambda: servo.tick is not None)
     begin, moment = time.perf_counter(), servo._loop.time
     time.sleep(2.0)
@@ -275,7 +275,7 @@ def test_it_keeps_pace_with_the_clock(servo):
     assert 0.5 * passed < servo._loop.time - moment < passed + 0.1
 
 
-def test_it_serves_until_it_is_closed():
+def test_the_server_runs_until_it_is_closed():
     before = threading.active_count()
     servo = a_servo()
     with urllib.request.urlopen(servo.url) as page:
@@ -327,7 +327,7 @@ print("closed")
 """
 
 
-def test_it_prints_its_address_and_ctrl_c_closes_it():
+def test_the_address_is_printed_and_ctrl_c_closes_the_server():
     command = [sys.executable, "-c", SCRIPT]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as child:
         said = child.stdout.readline()

@@ -83,7 +83,7 @@ KINDS = [("panda", "pose"), ("panda", "position"), ("planar", "pose"), ("planar"
 @pytest.mark.parametrize(("which", "task"), KINDS)
 @settings(max_examples=15, deadline=None)
 @given(data=st.data())
-def test_limits_hold_wherever_the_handle_jumps(which, task, data):
+def test_limits_are_kept_for_any_handle_jump(which, task, data):
     """Near, unreachable, through the base; with frames of any length, stops, and other schemes."""
     loop, clock = a_loop(which, task)
     q0, start, ticks = loop.q, loop.target, []
@@ -105,7 +105,7 @@ def test_limits_hold_wherever_the_handle_jumps(which, task, data):
 
 
 @pytest.mark.parametrize(("which", "task"), KINDS)
-def test_it_comes_to_rest_on_a_handle_that_is_let_go(which, task):
+def test_the_arm_stops_at_a_released_handle(which, task):
     loop, clock = a_loop(which, task)
     q0, start, ticks = loop.q, loop.target, []
     for share in np.linspace(0, 1, 20):
@@ -119,7 +119,7 @@ def test_it_comes_to_rest_on_a_handle_that_is_let_go(which, task):
 
 
 @pytest.mark.parametrize(("which", "task"), KINDS)
-def test_out_of_reach_it_rests_and_comes_back(which, task):
+def test_unreachable_target_stops_and_returns(which, task):
     loop, clock = a_loop(which, task)
     q0, start = loop.q, loop.target
     loop.push(moved(start, [0.0, 5.0]))
@@ -146,7 +146,7 @@ def test_the_status_is_the_worst_of_a_quarter_of_a_second():
     assert mixed
 
 
-def test_through_a_singular_posture():
+def test_a_singular_posture_is_crossed():
     """The handle moves from one side of a planar arm's base to the other, through the stretched posture's line."""
     loop, clock = a_loop("planar", "position")
     q0, ticks = loop.q, []
@@ -160,7 +160,7 @@ def test_through_a_singular_posture():
     kept(loop, q0, ticks)
 
 
-def test_stop_and_go_on():
+def test_a_motion_stops_and_resumes():
     loop, clock = a_loop()
     q0, target = loop.q, moved(loop.target, [0.1, 0.2])
     loop.push(target)
@@ -183,7 +183,7 @@ def test_stop_and_go_on():
     kept(loop, q0, ticks)
 
 
-def test_back_to_the_start():
+def test_a_restart_returns_to_the_start():
     loop, clock = a_loop()
     loop.push(moved(loop.target, [0.1, 0.2]))
     play(loop, clock, 0.5)
@@ -219,7 +219,7 @@ def test_a_slow_machine_drops_time():
     np.testing.assert_allclose(loop.tip, target, atol=1e-6)
 
 
-def test_the_strip_is_what_the_ticks_did():
+def test_the_strip_records_the_ticks():
     limits = bounds()
     loop, clock = a_loop("planar", "position", limits=limits)
     loop.push([1.0, 2.0])
@@ -244,7 +244,7 @@ def test_the_strip_is_what_the_ticks_did():
     assert worst[0].max() < 0.01
 
 
-def test_what_is_not_bounded_has_no_share():
+def test_unbounded_quantities_have_no_share():
     loop, clock = a_loop("planar", "position", limits=None)
     loop.push([1.0, 2.0])
     play(loop, clock, 1)
@@ -253,7 +253,7 @@ def test_what_is_not_bounded_has_no_share():
     assert ServoLoop(PANDA, fpbm(7), READY).strip.bounded == (True, True, True)
 
 
-def test_own_bounds_of_the_tip():
+def test_a_target_filter_bounds_the_speed_of_the_tip():
     tip = fp.Tracker(PANDA, fpbm(7), READY).tip
     targets = fp.TargetFilter(tip, velocity=0.02, acceleration=1, jerk=10)
     loop, clock = a_loop("panda", "position", targets=targets)
@@ -276,7 +276,7 @@ def a_clear_loop(**how):
 
 @settings(max_examples=15, deadline=None)
 @given(st.lists(st.tuples(st.floats(-4, 4), st.floats(-4, 4)), min_size=1, max_size=5))
-def test_no_shape_is_touched_wherever_the_handle_jumps(places):
+def test_no_shape_is_touched_for_any_handle_jump(places):
     loop, clock = a_clear_loop()
     for place in places:
         loop.push(place)
@@ -285,7 +285,7 @@ def test_no_shape_is_touched_wherever_the_handle_jumps(places):
             assert (np.abs(tick.qd) <= loop.limits.velocity + 1e-9).all()
 
 
-def test_an_obstacle_goes_evenly_where_it_is_dragged():
+def test_a_dragged_obstacle_moves_at_a_bounded_speed():
     loop, clock = a_clear_loop()
     loop.push([2.6, 2.4])
     play(loop, clock, 3)
@@ -305,7 +305,7 @@ def test_an_obstacle_goes_evenly_where_it_is_dragged():
     np.testing.assert_allclose(loop.tip, there, atol=1e-4)
 
 
-def test_obstacles_stay_under_another_scheme_and_go_back_to_the_start():
+def test_obstacles_outlast_a_scheme_change_and_return_at_a_restart():
     loop, clock = a_clear_loop()
     loop.drag("post", [0.3, 0.0, 0.0])
     play(loop, clock, 2)
@@ -323,7 +323,7 @@ def test_obstacles_stay_under_another_scheme_and_go_back_to_the_start():
         loop.drag("wall", [0, 0, 0])
 
 
-def test_what_does_not_suit_is_refused():
+def test_invalid_arguments_are_rejected():
     bent = fp.PlanarArm([1, 1, 1])
     limits = fp.JointLimits(lower=[-3] * 3, upper=[3] * 3, velocity=[1] * 3, acceleration=[np.inf] * 3)
     with pytest.raises(ValueError, match=r"limits.acceleration\[0\] = inf: must be finite"):
@@ -346,7 +346,7 @@ def test_what_does_not_suit_is_refused():
     np.testing.assert_allclose(loop.q, READY, atol=1e-9)
 
 
-def test_many_threads_at_once():
+def test_simultaneous_threads_are_safe():
     loop = ServoLoop(PANDA, fpbm(7), READY)  # By the true clock.
     start, errors = loop.target, []
     deeds = [loop.advance, loop.stop, loop.resume, lambda: loop.push(start), lambda: loop.status, loop.restart]

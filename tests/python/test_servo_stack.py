@@ -75,7 +75,7 @@ def test_orientations_and_poses_have_targets():
 
 @settings(max_examples=15, deadline=None)
 @given(data=st.data())
-def test_limits_hold_wherever_the_handles_jump(data):
+def test_limits_are_kept_for_any_handle_jump(data):
     loop, clock = a_loop()
     start, ticks = loop.target, []
     schemes = [fp.MVN(), fp.MAN(null_damping=1), fp.FPBM(0.6, WEIGHTS, 0, 0), fp.Balanced(0.2, WEIGHTS)]
@@ -93,7 +93,7 @@ def test_limits_hold_wherever_the_handles_jump(data):
     assert ((loop.strip.shares[3:] >= 0) & (loop.strip.shares[3:] <= 1)).all()
 
 
-def test_one_level_is_the_loop_of_that_task():
+def test_one_level_moves_as_the_loop_of_that_task():
     clock = Clock()
     alone = ServoLoop(PANDA, fpbm(7), READY, clock=clock)
     loop, other = a_loop(fp.Stack(fp.PositionTask(name="place")))
@@ -119,7 +119,7 @@ def test_the_strip_has_the_scale_of_each_level():
     np.testing.assert_array_equal(there[3:].min(axis=1), scales.min(axis=0))
 
 
-def test_tasks_have_targets_of_their_own():
+def test_each_task_starts_at_its_own_target():
     """Also after a restart, at which handles are where they were at first."""
     away = moved(PANDA.forward(READY)[:3, 3], [0.0, 0.15, 0.0])
     loop, clock = a_loop(fp.Stack(fp.PositionTask(x=away, name="place"), fp.PostureTask(OTHER, k1=4, k2=4)))
@@ -161,7 +161,7 @@ def test_another_scheme_keeps_the_targets():
     kept(loop, q0, ticks)
 
 
-def test_own_bounds_of_one_task():
+def test_a_target_filter_bounds_the_speed_of_its_task():
     tip = PANDA.forward(READY)[:3, 3]
     slow = fp.TargetFilter(tip, velocity=0.02, acceleration=1, jerk=10)
     loop, clock = a_loop(targets={"place": slow})
@@ -173,7 +173,7 @@ def test_own_bounds_of_one_task():
         before = loop.tip["place"]
 
 
-def test_what_does_not_suit_is_refused():
+def test_invalid_arguments_are_rejected():
     tip = PANDA.forward(READY)[:3, 3]
     plain, late = (fp.TargetFilter(tip, velocity=1, acceleration=1, jerk=1, dt=dt) for dt in (1e-3, 2e-3))
     for how, words in [
@@ -236,7 +236,7 @@ POSE = st.builds(a_pose, THREE, THREE)
 
 
 @given(POSE)
-def test_a_frame_of_a_point_is_that_point(pose):
+def test_a_frame_of_a_point_gives_that_point(pose):
     R, p = pose[:3, :3], pose[:3, 3]
     angle = np.array([*p[:2], 0.7])
     points = [(fp.PositionTask(), p), (fp.PositionTask(), p[:2]), (fp.OrientationTask(), R), (fp.AxisTask(), R[:, 2])]
@@ -246,7 +246,7 @@ def test_a_frame_of_a_point_is_that_point(pose):
 
 
 @given(POSE, POSE)
-def test_distances_are_those_of_the_tasks_errors(pose, now):
+def test_distances_equal_the_errors_of_the_tasks(pose, now):
     """As large as the error in the rows that the task selects."""
     linear, turn = pose[:3, 3] - now[:3, 3], fp.rotation_vector(pose[:3, :3] @ now[:3, :3].T)
     size, seen = np.linalg.norm, now[:3, :3].T

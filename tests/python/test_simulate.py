@@ -39,7 +39,7 @@ def numpy_rollout(lengths, path, weights, alpha, k1, k2, q0, steps):
 
 
 @pytest.mark.parametrize("n", [2, 4, 9, 12])
-def test_same_steps_as_numpy(n):
+def test_steps_equal_those_of_numpy(n):
     rng = np.random.default_rng(n)
     lengths, weights, q0 = rng.uniform(0.5, 1, n), rng.uniform(1, 4, n), rng.uniform(1.0, 1.4, n)
     path = fp.Circle(0.1, 2.0)
@@ -50,7 +50,7 @@ def test_same_steps_as_numpy(n):
 
 
 @pytest.mark.parametrize(("scheme", "dt"), [(fp.MAN(), 5e-3), (fp.FPBM(0.6, [1, 2, 3, 4], 1, 1), 2e-2)])
-def test_a_step_that_is_too_long_is_said(arm, scheme, dt):
+def test_a_step_that_is_too_long_is_reported(arm, scheme, dt):
     """Past a nearly singular posture. The error in the end is the integration's alone."""
     path, q0 = fp.Circle(1.05, 1.0), [0.3, 0.6, 0.6, 0.6]
     run = fp.simulate(arm, path, scheme, q0, dt=dt)
@@ -67,7 +67,7 @@ def test_a_step_that_is_too_long_is_said(arm, scheme, dt):
     assert (sweep.max_error == run.max_error()).all()
 
 
-def test_what_a_run_holds(run, arm, circle, q0):
+def test_a_run_holds_consistent_arrays(run, arm, circle, q0):
     assert run.status.ok
     assert bool(run.status)
     assert run.status.code is fp.Status.OK
@@ -86,7 +86,7 @@ def test_what_a_run_holds(run, arm, circle, q0):
     assert "FPBM(alpha=0.6" in repr(run)
 
 
-def test_velocity_and_acceleration_level_are_one_motion(arm, circle, q0):
+def test_velocity_and_acceleration_level_give_the_same_motion(arm, circle, q0):
     """Theorem 1: (7) differentiated is (9)."""
     velocity = fp.simulate(arm, circle, fp.WMVN(W), q0)
     acceleration = fp.simulate(arm, circle, fp.WMVNAcceleration(W), q0)
@@ -118,7 +118,7 @@ def test_initial_velocity(arm, q0):
     [fp.MVN(), fp.WMVN(W, k=5), fp.MAN(), fp.WMVNAcceleration(W), fp.Balanced(0.5, W), fp.FPBM(0.6, W, 1, 1)],
     ids=repr,
 )
-def test_out_of_reach_stops_and_keeps_the_part_before(arm, q0, scheme):
+def test_unreachable_path_stops_and_keeps_the_completed_part(arm, q0, scheme):
     path = fp.Line([5, 0], 5.0, time_law="quintic")
     with pytest.raises(fp.ResolutionError, match=r"stopped after t = .* at q = .*Keep the path inside") as caught:
         fp.simulate(arm, path, scheme, q0)
@@ -136,7 +136,7 @@ def test_out_of_reach_stops_and_keeps_the_part_before(arm, q0, scheme):
     np.testing.assert_array_equal(again.q, kept.q)
 
 
-def test_a_singular_start_keeps_nothing(arm, circle):
+def test_a_singular_start_has_no_samples(arm, circle):
     run = fp.simulate(arm, circle, fp.MAN(), np.zeros(4), partial=True)
     assert len(run.t) == 0
     assert run.status.code is fp.Status.SINGULAR
@@ -172,7 +172,7 @@ def test_bad_arguments(arm, circle, q0, change, words):
         fp.simulate(arm, **arguments)
 
 
-def test_other_threads_run_meanwhile(arm, circle, q0):
+def test_other_threads_run_during_a_simulation(arm, circle, q0):
     """The interpreter's lock is released: two simultaneous simulations finish and agree with one alone."""
     scheme = fp.FPBM(0.6, W, 1, 1)
     runs = [None, None]

@@ -21,7 +21,7 @@ def write(tmp_path: Path) -> Callable[[str], Path]:
     return write
 
 
-def test_pairs_are_in_order_and_there_once(write) -> None:
+def test_pairs_are_ordered_and_unique(write) -> None:
     file = write(
         '<?xml version="1.0"?><robot name="r"><group name="arm"><chain base_link="a" tip_link="b"/></group>'
         '<disable_collisions link1="b" link2="a" reason="Adjacent"/><disable_default_collisions link="a"/>'
@@ -44,7 +44,7 @@ def test_pairs_are_in_order_and_there_once(write) -> None:
         ("<srdf/>", "line 1: the root is <srdf>: must be <robot>, as in a URDF or SRDF file"),
     ],
 )
-def test_refused(text: str, message: str, write) -> None:
+def test_invalid_srdf_is_rejected(text: str, message: str, write) -> None:
     file = write(text)
     with pytest.raises(ValueError, match=f"^{re.escape(str(file))}: .*{re.escape(message)}"):
         read_disabled_pairs(file)

@@ -56,7 +56,7 @@ def excess(limits, q, qd0=0.0):
 
 @pytest.mark.parametrize("name", ["panda", "ur5e", "iiwa14"])
 @pytest.mark.parametrize("task", ["position", "pose"])
-def test_one_level_is_the_tracker_of_that_task(name, task):
+def test_one_level_moves_as_the_tracker_of_that_task(name, task):
     arm = fp.SerialArm.preset(name)
     q0 = (arm.limits.lower.clip(-2) + arm.limits.upper.clip(max=2)) / 2 + 0.2
     weights = np.arange(1.0, 1.0 + arm.dof)
@@ -81,7 +81,7 @@ def test_one_level_is_the_tracker_of_that_task(name, task):
         assert np.abs(other.errors[task] - tick.error).max() < 1e-9
 
 
-def test_moves_a_cup(panda, balanced):
+def test_a_cup_stays_upright(panda, balanced):
     tracker = fp.Tracker(panda, balanced, READY, stack=cup())
     goal = tracker.tip["place"] + [0.2, 0.3, -0.1]
     tilt = 0.0
@@ -249,7 +249,7 @@ def test_offsets_and_joints(panda, balanced):
     assert tracker.q[0] > 0.05
 
 
-def test_answers_for_measured_states(panda, balanced):
+def test_measured_states_are_resolved(panda, balanced):
     tracker = fp.Tracker(panda, balanced, READY, stack=cup(), measured_delay=0)
     goal = tracker.tip["place"] + [0.1, 0.1, -0.1]
     q, qd = np.array(READY), np.zeros(7)
@@ -263,7 +263,7 @@ def test_answers_for_measured_states(panda, balanced):
         fp.Tracker(panda, fp.MVN(), READY, stack=cup()).resolve_measured(q, qd, {})
 
 
-def test_keeps_clear_of_a_wall(panda, balanced):
+def test_the_margin_to_a_wall_is_kept(panda, balanced):
     wall = fp.HalfSpace((0, -1, 0), -0.25, name="wall")
     clearance = fp.Clearance([fp.Capsule(7, (0, 0, 0), (0, 0, 0.1), 0.05)], [wall], margin=0.01)
     tracker = fp.Tracker(panda, balanced, READY, stack=cup(), clearance=clearance)
@@ -305,7 +305,7 @@ def test_stacks_are_values():
         (lambda: fp.PostureTask(joints=[["a"]]), "must be names of joints"),
     ],
 )
-def test_wrong_tasks(make, message):
+def test_invalid_tasks_are_rejected(make, message):
     with pytest.raises(fp.ParameterError, match=message):
         make()
 
@@ -329,12 +329,12 @@ def test_wrong_tasks(make, message):
         (fp.Stack(*(fp.PostureTask(name=n) for n in "abcde")), "number of levels = 5"),
     ],
 )
-def test_stacks_that_do_not_suit_an_arm(panda, balanced, stack, message):
+def test_invalid_stacks_are_rejected(panda, balanced, stack, message):
     with pytest.raises(fp.ParameterError, match=message):
         fp.Tracker(panda, balanced, READY, stack=stack)
 
 
-def test_wrong_schemes(panda):
+def test_invalid_schemes_are_rejected(panda):
     weights = np.ones(7)
     for scheme, message in [
         (fp.FPBM(0.6, weights, 10, 25), "k1 = 10: must be 0: give gains to the tasks of the stack"),
@@ -378,7 +378,7 @@ def test_the_largest_gains_that_are_accepted_damp_errors(panda, level):
     assert max(last[-1000:]) < 1e-4
 
 
-def test_wrong_references_change_nothing(panda, balanced):
+def test_invalid_references_have_no_effect(panda, balanced):
     tracker = fp.Tracker(panda, balanced, READY, stack=cup())
     place = tracker.tip["place"]
     for references, message in [
@@ -446,7 +446,7 @@ def test_a_kept_stop_does_not_move_a_reordered_arm(panda, balanced):
     assert np.linalg.norm(tracker.tip["far"] - goals["far"]) > 0.2
 
 
-def test_wrong_orders_change_nothing(panda, balanced):
+def test_invalid_orders_have_no_effect(panda, balanced):
     tracker = fp.Tracker(panda, balanced, READY, stack=cup())
     tracker.enable(2, False)
     for order in ([0, 1], [0, 1, 2, 2], [0, 1, 2, 4], [-1, 0, 1, 2], [2, 0, 1, 3], []):
@@ -460,7 +460,7 @@ def test_wrong_orders_change_nothing(panda, balanced):
 
 
 @pytest.mark.parametrize("level", ["velocity", "acceleration"])
-def test_an_arm_moves_on_from_a_wall(panda, level):
+def test_an_arm_continues_after_a_wall(panda, level):
     """A wall for the elbow blocks the place, which comes back and is reached; the cup stays upright."""
     scheme = fp.WMVN(np.ones(7)) if level == "velocity" else fp.Balanced(0.6, np.ones(7), null_damping=2)
     stack = fp.Stack(fp.AxisTask(x=[0, 0, -1], name="upright"), fp.PositionTask(name="place"), fp.PostureTask(READY))

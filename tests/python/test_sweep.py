@@ -102,7 +102,7 @@ def expect_agreement(lanes, alone):
 
 @pytest.mark.parametrize("within", [None, 1.0, 0.1])
 @pytest.mark.parametrize("case", CASES)
-def test_motions_side_by_side_in_lanes_are_those_that_go_alone(case, within):
+def test_motions_in_lanes_agree_with_single_motions(case, within):
     arm, path, task, q0 = CASES[case]
     schemes = every_scheme(arm.dof)
     q0s = q0 + np.random.default_rng(3).uniform(-0.05, 0.05, (11, arm.dof))
@@ -116,7 +116,7 @@ def test_motions_side_by_side_in_lanes_are_those_that_go_alone(case, within):
 
 
 @pytest.mark.parametrize("within", [None, 1.0, 0.1])
-def test_a_motion_does_not_feel_the_others_lanes(within):
+def test_lanes_do_not_influence_one_another(within):
     arm, path, task, q0 = CASES["panda pose"]
     scheme = every_scheme(7)[-2]
     q0s = q0 + np.random.default_rng(4).uniform(-0.05, 0.05, (fp.LANES + 3, 7))
@@ -148,7 +148,7 @@ def test_lanes_can_be_chosen(choice):
         assert run.stdout.strip() == known
 
 
-def test_a_choice_of_lanes_that_is_none():
+def test_an_invalid_choice_of_lanes_is_rejected():
     environment = {**os.environ, "FPBM_LANES": "avx1024"}
     run = subprocess.run([sys.executable, "-c", "import fpbm_cpp"], env=environment, capture_output=True, text=True)
     assert run.returncode != 0
@@ -156,7 +156,7 @@ def test_a_choice_of_lanes_that_is_none():
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_a_sweep_is_many_simulations(case):
+def test_a_sweep_equals_single_simulations(case):
     arm, path, task, q0 = CASES[case]
     schemes = every_scheme(arm.dof)
     q0s = q0 + np.random.default_rng(0).uniform(-0.05, 0.05, (3, arm.dof))
@@ -254,7 +254,7 @@ LIMITED = {
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_within_limits_a_sweep_is_many_tracks(case):
+def test_a_sweep_within_limits_equals_single_tracks(case):
     arm, path, task, q0 = CASES[case]
     schemes = every_scheme(arm.dof)
     q0s = q0 + np.random.default_rng(0).uniform(-0.05, 0.05, (2, arm.dof))
@@ -308,7 +308,7 @@ def test_bad_limits(arm, circle, q0, change, words):
         fp.sweep(arm, **{"path": circle, "schemes": fp.MAN(), "q0s": q0, **change})
 
 
-def test_motions_that_fail_say_so(arm, q0):
+def test_failed_motions_are_reported(arm, q0):
     out = fp.Line([5, 0], 5.0, time_law="quintic")
     sweep = fp.sweep(arm, out, [fp.MVN(), fp.MAN()], [q0, np.zeros(4)], motions=True)
     assert not sweep.ok.any()
@@ -334,7 +334,7 @@ def test_damped_motions_are_complete():
     assert sweep.ok.all()
 
 
-def test_progress_is_told(arm, reference):
+def test_progress_is_reported(arm, reference):
     told = []
     same(large(arm, progress=lambda done, total: told.append((done, total))), reference)
     assert len(told) > 10
@@ -354,7 +354,7 @@ def test_progress_bar(arm, reference, capsys, monkeypatch):
         large(arm, progress=True)
 
 
-def test_what_progress_raises_ends_the_sweep(arm):
+def test_an_exception_of_progress_ends_the_sweep(arm):
     def refuse(done, total):
         raise RuntimeError("enough")
 
@@ -378,7 +378,7 @@ class Broken(Executor):
         return future
 
 
-def test_what_an_executor_raises_is_passed_on(arm):
+def test_an_exception_of_an_executor_is_raised(arm):
     with pytest.raises(OSError, match="the network is down"):
         large(arm, executor=Broken())
 
@@ -392,7 +392,7 @@ class AtOnce(Executor):
         return future
 
 
-def test_interruption_keeps_what_is_finished_elsewhere(arm, reference):
+def test_interruption_keeps_finished_motions_of_an_executor(arm, reference):
     def interrupt(done, total):
         raise KeyboardInterrupt
 
@@ -401,7 +401,7 @@ def test_interruption_keeps_what_is_finished_elsewhere(arm, reference):
     same(caught.value.sweep, reference)
 
 
-def test_interruption_keeps_what_is_finished(arm):
+def test_interruption_keeps_finished_motions(arm):
     def interrupt(done, total):
         if done > 100:
             raise KeyboardInterrupt
@@ -435,7 +435,7 @@ class Pressed(ThreadPoolExecutor):
 
 
 @pytest.mark.usefixtures("ctrl_c")
-def test_ctrl_c_leaves_no_lock_taken(arm):
+def test_ctrl_c_leaves_no_lock_acquired(arm):
     """It ends the sweep after the submission, and not within, where it might hold a lock of the executor's."""
     with Pressed(2) as threads:
         with pytest.raises(fp.SweepInterrupted):
@@ -495,7 +495,7 @@ if __name__ == "__main__":
         ("ProcessPoolExecutor(2)", 0.0),
     ],
 )
-def test_ctrl_c_stops_at_once(tmp_path, executor, hold):
+def test_ctrl_c_stops_immediately(tmp_path, executor, hold):
     """Also during a motion of 100 million steps (15 s or more), unless in another process, which is not waited for."""
     script = tmp_path / "script.py"
     script.write_text(SCRIPT)

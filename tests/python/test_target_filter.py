@@ -50,7 +50,7 @@ def arrivals(x, xd, xdd, target):
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_takes_no_more_than_a_tick_longer_than_ruckig(seed):
+def test_duration_exceeds_ruckig_s_by_at_most_one_tick(seed):
     """1,000 targets a seed: one half from rest, and never beyond them; the other from the midst of another motion."""
     ruckig = pytest.importorskip("ruckig", reason="Ruckig (PyPI: ruckig) is not installed")
     rng = np.random.default_rng(seed)
@@ -118,7 +118,7 @@ def test_does_not_lag_behind_a_stream(learnt):
     assert np.all(np.diff(x, axis=0)[4900:] * velocity >= 0)
 
 
-def test_is_not_led_astray_by_lies():
+def test_invalid_messages_have_no_effect():
     rng = np.random.default_rng(8)
     target_filter = fp.TargetFilter(np.zeros(2), **LINEAR)
     assert target_filter.push([0.1, 0.0], 1.0)
@@ -169,7 +169,7 @@ def test_orientations_end_at_rest_without_chatter(bounds, longest):
     assert max(ratios) < longest
 
 
-def test_a_pose_in_the_plane_turns_by_the_shorter_way():
+def test_a_planar_pose_turns_in_the_shorter_direction():
     target_filter = fp.TargetFilter([0, 0, 3], **LINEAR, **ANGULAR, task="pose")
     assert target_filter.push([0.1, 0, -3])
     x, xd, _ = moved(target_filter, 2000)
@@ -192,7 +192,7 @@ def test_a_twist_holds_until_the_timeout():
     assert way == pytest.approx(0.2 * (0.08 + (0.2 / 3 + 3 / 100) / 2), abs=0.2 * DT * 1.01)
 
 
-def test_leads_a_tracker(arm, q0):
+def test_a_tracker_follows_the_filter(arm, q0):
     scheme = fp.FPBM(0.6, np.ones(4), 10, 25, null_damping=2)
     tracker = fp.Tracker(arm, scheme, q0)
     target_filter = fp.TargetFilter(tracker.tip, **LINEAR)
@@ -223,7 +223,7 @@ def test_leads_a_tracker(arm, q0):
         ({"x0": [0, 0]}, None),
     ],
 )
-def test_refuses_bad_numbers_by_name(change, message):
+def test_invalid_numbers_are_rejected_by_name(change, message):
     arguments = {"x0": [0, 0, 0], **LINEAR} | change
     if message is None:
         fp.TargetFilter(**arguments)
@@ -232,7 +232,7 @@ def test_refuses_bad_numbers_by_name(change, message):
         fp.TargetFilter(**arguments)
 
 
-def test_refuses_wrong_shapes():
+def test_invalid_shapes_are_rejected():
     target_filter = fp.TargetFilter([0, 0, 0], **LINEAR)
     with pytest.raises(fp.ParameterError, match="x has 2 entries: must have 3"):
         target_filter.push([0, 0])

@@ -56,7 +56,7 @@ def test_the_papers_shapes(law):
             np.testing.assert_allclose(path.sample(t)[0], x, atol=1e-14)
 
 
-def test_one_after_another():
+def test_a_sequence_joins_paths():
     path = fp.Line([1, 0], 1.0).then(fp.Line([0, 1, 2], 2.0))
     assert path.duration == 3.0
     np.testing.assert_allclose(path.sample(1.0)[0], [1, 0, 0], atol=1e-15)
@@ -92,7 +92,7 @@ def test_through_waypoints():
         np.testing.assert_allclose(posed.sample(t)[0], pose, atol=1e-14)
 
 
-def test_repr_says_how_it_was_made():
+def test_repr_has_the_arguments():
     assert repr(fp.Circle(0.45, 10.0)) == "Circle(radius=0.45, duration=10)"
     assert repr(fp.Line([1, 2], 3.0, time_law="quintic")) == "Line(displacement=[1, 2], duration=3, time_law='quintic')"
 

@@ -38,7 +38,7 @@ FREE = {
 
 
 @pytest.mark.parametrize("case", FREE)
-def test_free_of_limits_it_is_simulate(case):
+def test_without_limits_track_equals_simulate(case):
     arm, path, scheme, task = FREE[case]
     start = BENT if arm is PANDA else [0.3, 0.9, 0.9, 0.5]
     none = np.full(arm.dof, np.inf)
@@ -61,7 +61,7 @@ def test_free_of_limits_it_is_simulate(case):
     assert not here.saturated.any()
 
 
-def test_what_a_sample_is(q0):
+def test_a_sample_is_the_state_before_its_tick(q0):
     """Sample k is the tracker's state before tick k, and the status of tick k."""
     arm, scheme = fp.PlanarArm([1, 1, 1, 1]), fp.FPBM(0.6, W, 10, 25, null_damping=2)
     run = fp.track(arm, fp.Circle(0.45, 2.0), scheme, q0, dt=0.01, hold=0.1, limits=TIGHT, error_bound=0.05)
@@ -81,7 +81,7 @@ def test_what_a_sample_is(q0):
     np.testing.assert_allclose(np.diff(run.qd, axis=0), 0.01 * run.qdd[:-1], atol=1e-12)
 
 
-def test_limits_are_kept_and_said(q0):
+def test_limits_are_kept_and_reported(q0):
     arm, scheme = fp.PlanarArm([1, 1, 1, 1]), fp.FPBM(0.6, W, 10, 25, null_damping=2)
     run = fp.track(arm, fp.Circle(0.45, 5.0), scheme, q0, hold=1.0, limits=TIGHT)
     assert run.status.code is fp.Status.SLOWED
@@ -96,7 +96,7 @@ def test_limits_are_kept_and_said(q0):
     assert np.abs(free.qd).max() > 0.2
 
 
-def test_through_a_singular_posture():
+def test_a_singular_posture_is_crossed():
     """Stretched out, where simulate() stops immediately."""
     arm = fp.PlanarArm([1, 1, 1, 1])
     assert fp.track(arm, SMOOTH, fp.MAN(), np.zeros(4)).status.code is fp.Status.DAMPED
@@ -107,7 +107,7 @@ def test_through_a_singular_posture():
     assert (stuck.qd == 0).all()
 
 
-def test_options_make_it_again(q0):
+def test_options_reproduce_the_run(q0):
     arm, scheme = fp.PlanarArm([1, 1, 1, 1]), fp.FPBM(0.6, W, 10, 25)
     given = {
         "dt": 0.01,
@@ -146,7 +146,7 @@ def test_options_make_it_again(q0):
 
 
 @pytest.mark.parametrize("function", [fp.track, fp.sweep], ids=["track", "sweep"])
-def test_defaults_are_the_trackers(function):
+def test_defaults_equal_those_of_the_tracker(function):
     defaults = dict(re.findall(r"(\w+): [^,]*? = ([\d.]+)", fp.Tracker.__init__.__doc__))
     own = {name: parameter.default for name, parameter in signature(function).parameters.items()}
     del defaults["measured_delay"]  # Neither resolves measured states.
@@ -163,7 +163,7 @@ def test_defaults_are_the_trackers(function):
     assert {name: float(value) for name, value in defaults.items()} == {name: own[name] for name in defaults}
 
 
-def test_it_goes_through_pickle_with_its_limits(q0):
+def test_pickle_keeps_the_limits(q0):
     run = fp.track(fp.PlanarArm([1, 1, 1, 1]), SMOOTH, fp.MVN(), q0, dt=0.01, limits=TIGHT)
     for other in (pickle.loads(pickle.dumps(run)), copy.deepcopy(run)):
         assert other == run
@@ -204,7 +204,7 @@ def test_a_missing_limit_is_named():
 
 
 @pytest.mark.usefixtures("ctrl_c")
-def test_ctrl_c_ends_it(arm, q0):
+def test_ctrl_c_ends_a_motion(arm, q0):
     timer = threading.Timer(0.2, signal.raise_signal, [signal.SIGINT])
     timer.start()
     with pytest.raises(KeyboardInterrupt):

@@ -127,7 +127,7 @@ def test_a_path_is_followed_paused_resumed_and_finished(panda, settling):
     np.testing.assert_array_equal(tick.q, tracker.q)
 
 
-def test_it_stops_and_goes_on(panda, settling):
+def test_a_motion_stops_and_resumes(panda, settling):
     tracker = fp.Tracker(panda, settling, BENT, task="position")
     target = tracker.tip + np.array([0, 0.2, 0])
     for _ in range(300):
@@ -145,7 +145,7 @@ def test_it_stops_and_goes_on(panda, settling):
 
 @pytest.mark.parametrize("jerk", [np.inf, 1.0, 0.2])
 @pytest.mark.parametrize("level", ["velocity", "acceleration"])
-def test_out_of_reach_and_back(panda, settling, level, jerk):
+def test_unreachable_target_stops_and_returns(panda, settling, level, jerk):
     """Limits keep the elbow from passing its outstretched posture, as docs/limits.md says."""
     stretched = np.array([np.inf, np.inf, np.inf, -0.47, np.inf, np.inf, np.inf])
     limits = replace(panda.limits, upper=np.minimum(panda.limits.upper, stretched), jerk=jerk * panda.limits.jerk)
@@ -169,7 +169,7 @@ def test_out_of_reach_and_back(panda, settling, level, jerk):
     assert seen - {fp.Status.SLOWED} == {fp.Status.OK, fp.Status.DAMPED, fp.Status.STALLED}
 
 
-def test_objectives_that_need_the_arm(panda):
+def test_manipulability_gain_increases_manipulability(panda):
     scheme = fp.FPBM(0.6, np.ones(7), 10, 25, null_damping=4, manipulability_gain=1.0)
     tracker = fp.Tracker(panda, scheme, BENT, task="position")
     start = tracker.tip
@@ -215,7 +215,7 @@ def test_self_motion_comes_to_rest(panda, make):
         (fp.FPBM(0.6, np.ones(7), 10, 25), {"integral_gain": 300}, "integral_gain = 300: must be at most 247"),
     ],
 )
-def test_gains_beyond_the_tick(panda, scheme, options, words):
+def test_unstable_gains_are_rejected(panda, scheme, options, words):
     with pytest.raises(fp.ParameterError, match=words) as refused:
         fp.Tracker(panda, scheme, BENT, **options)
     assert refused.value.name == words.partition(" ")[0]

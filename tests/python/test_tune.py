@@ -76,7 +76,7 @@ def test_laws(objective, seed, trials, hold):
     assert (np.diff(front[:, 1]) < 0).all()
 
 
-def test_limit_distance_is_of_simulate():
+def test_limit_distance_agrees_with_simulate():
     path = fp.Circle(0.1, 1.0).in_plane("yz")
     tuning = fp.tune(PANDA, path, READY, "limit_distance", dt=0.02, task="pose", trials=20, workers=1)
     np.testing.assert_allclose(tuning.value, objective_of(tuning, tuning.scheme, dt=0.02), rtol=1e-9)
@@ -92,7 +92,7 @@ def test_the_range_used_is_one_on_a_bound():
         assert tuner.limit_distance(run) == pytest.approx(1.0, abs=1e-14)
 
 
-def test_it_finds_what_is_better(tuning):
+def test_tuning_improves_the_baseline(tuning):
     assert tuning.improvement > 0.1
     assert tuning.value == pytest.approx((1 - tuning.improvement) * tuning.baseline_value)
     assert len(tuning.front) >= 2
@@ -101,7 +101,7 @@ def test_it_finds_what_is_better(tuning):
 @pytest.mark.parametrize(
     ("before", "words"), [(-2.0, "50 % below the baseline's -2"), (0.0, "against the baseline's 0")]
 )
-def test_objectives_that_are_not_positive(before, words):
+def test_objectives_need_not_be_positive(before, words):
     def sinking(run):
         return before if "null_damping" not in repr(run.scheme) else -3.0
 
@@ -129,13 +129,13 @@ def test_workers_change_nothing(tuning):
         same(quick(trials=120, workers=None, executor=processes), tuning)
 
 
-def test_a_seed_is_one_answer():
+def test_a_seed_determines_the_result():
     same(quick(seed=3), quick(seed=3))
     assert quick(seed=3).scheme is not quick(seed=4).scheme
     assert quick(seed=3).value != quick(seed=4).value
 
 
-def test_only_what_is_searched_varies():
+def test_only_searched_parameters_vary():
     baseline = fp.FPBM(0.3, [2, 2, 4, 4], 5, 7, null_damping=0.5, rest_posture=Q0, null_stiffness=1)
     before = repr(baseline)
     ranges = {"k1": (1, 3), "weights": [(0.5, 0.6), (1, 2), (3, 9)]}
@@ -157,7 +157,7 @@ def test_only_what_is_searched_varies():
     assert repr(fp.FPBM(**tuning.parameters, rest_posture=Q0, null_stiffness=1)) == repr(tuning.scheme)
 
 
-def test_what_is_infeasible_is_never_returned():
+def test_infeasible_schemes_are_never_returned():
     """At steps of 0.25 s RK4 errs, by 3e-5 m to 1e-4 m."""
     bound = 3.25e-5
     tuning = quick("peak_acceleration", dt=0.25, tolerance=bound, trials=80)
@@ -190,7 +190,7 @@ def test_a_baseline_that_is_infeasible():
     assert tuning.trials.feasible[tuning.trials.best()]
 
 
-def test_where_nothing_is_feasible():
+def test_tuning_without_feasible_schemes_raises():
     with pytest.raises(RuntimeError, match="none of 9 schemes is feasible: 9 stopped early"):
         fp.tune(ARM, fp.Line([5, 0], 5.0), Q0, dt=0.05, trials=8)
     with pytest.raises(
@@ -212,14 +212,14 @@ def test_sensitivity(tuning):
         assert abs(tuning.sensitivity["k1"][i]) < 1e-6
 
 
-def test_a_parameter_that_cannot_step():
+def test_a_parameter_at_its_bound_has_no_sensitivity():
     tuning = quick(search={"weights": (0.5, 2)}, baseline=fp.FPBM(1, [1, 1, 1, 1], 1, 1), trials=4)
     assert np.isnan(tuning.sensitivity["alpha"][1])
     assert np.isfinite(tuning.sensitivity["alpha"][0])
     assert np.isnan(tuning.sensitivity["null_damping"]).all()
 
 
-def test_a_step_to_what_is_infeasible_has_no_price():
+def test_a_step_to_an_infeasible_scheme_has_infinite_sensitivity():
     scheme = fp.FPBM(0.5, [1, 2], 1, 1, null_damping=1)
 
     def run(schemes):
@@ -270,7 +270,7 @@ def test_progress():
 
 
 @pytest.mark.parametrize("after", [20, 41])
-def test_interruption_keeps_what_was_found(after):
+def test_interruption_keeps_finished_trials(after):
     def interrupt(done, total):
         if done >= after:
             raise KeyboardInterrupt
@@ -353,7 +353,7 @@ def test_missing_libraries(tuning, monkeypatch):
         tuning.plot()
 
 
-def test_the_package_alone_needs_none_of_it():
+def test_the_package_does_not_import_optional_libraries():
     code = "import sys, fpbm_cpp; assert not {'cmaes', 'matplotlib', 'scipy'} & set(sys.modules)"
     subprocess.run([sys.executable, "-c", code], check=True)
 
@@ -387,7 +387,7 @@ def test_pareto_front(pairs):
     assert len({pairs[i] for i in kept}) == len(kept)
 
 
-def test_a_search_finds_the_least():
+def test_a_search_finds_the_minimum():
     goal = np.array([0.2, 0.9, 0.5])
     seeking, scored = search.least(3, 0), []
     points = next(seeking)
@@ -400,14 +400,14 @@ def test_a_search_finds_the_least():
     assert np.nanmin(scored) < 1.001
 
 
-def test_a_search_that_is_done_begins_again_elsewhere():
+def test_a_converged_search_restarts_at_another_point():
     seeking = search.least(2, 0)
     next(seeking)
     begun = [seeking.send(np.ones(16)).mean(axis=0) for _ in range(40)]
     assert np.std(begun, axis=0).min() > 0.1
 
 
-def test_a_search_finds_a_front_also_in_its_hollow():
+def test_a_search_finds_a_concave_front():
     """Fonseca and Fleming's: of this front, sums of the two find the ends alone."""
     seeking, scored = search.front(2, 0), []
     points = next(seeking)

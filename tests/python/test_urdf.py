@@ -151,7 +151,7 @@ def test_names_types_and_bounds(write) -> None:
     assert all(j.mimic is None for j in joints)
 
 
-def test_jerk_and_a_frankas_bound_on_velocity_are_read_where_they_are_stated(write) -> None:
+def test_jerk_and_the_velocity_bound_of_a_franka_are_read(write) -> None:
     limit = '<limit lower="-2" upper="2" velocity="3" acceleration="10" jerk="5000"/>'
     envelope = '<position_based_velocity_limits velocity_offset="0.3" deceleration_limit="6.0"/>'
     (a, b), _ = read_urdf(write(three_links(Z + limit + envelope, Z + LIMIT)), "tip")
@@ -165,7 +165,7 @@ def test_jerk_and_a_frankas_bound_on_velocity_are_read_where_they_are_stated(wri
             read_urdf(urdf, "tip")
 
 
-def test_acceleration_is_read_where_it_is_stated(write) -> None:
+def test_acceleration_is_read(write) -> None:
     """The acceleration of a leader is reduced like its velocity."""
     limit = '<limit lower="-1" upper="2" velocity="3" acceleration="{}"/>'
     (a, b), _ = read_urdf(write(three_links(Z + limit.format(8), Z + limit.format("1e2"))), "tip")
@@ -236,7 +236,7 @@ def test_order_in_the_file_does_not_matter(write) -> None:
     assert [j.name for j in read_urdf(write(text), "tip")[0]] == ["a", "b"]
 
 
-def test_what_is_off_the_way_does_not_matter(write) -> None:
+def test_elements_outside_the_chain_have_no_effect(write) -> None:
     clutter = (
         '<link name="eye"><visual><origin xyz="here"/><geometry><mesh filename="no/where.stl" scale="?"/></geometry>'
         '<material name="m"><color rgba="red"/></material></visual><inertial><mass value="heavy"/></inertial></link>'
@@ -261,7 +261,7 @@ def test_names_in_any_script(write) -> None:
     assert read_urdf(write(text.encode("utf-16")), "Hände")[0][0].name == 'Ärmel "1"'
 
 
-def test_leftovers_of_xacro_are_fine(write) -> None:
+def test_xacro_namespaces_are_accepted(write) -> None:
     text = TREE.replace("<robot", '<robot xmlns:xacro="http://ros.org/wiki/xacro" xmlns="urn:x"')
     assert len(read_urdf(write(text), "hand")[0]) == 3
 
@@ -340,13 +340,13 @@ def test_mimic_of_a_mimic(write) -> None:
         ('multiplier="-1" offset="1.5"', -0.5, 2, 3),
     ],
 )
-def test_bounds_hold_for_those_that_mimic(numbers: str, lower: float, upper: float, velocity: float, write) -> None:
+def test_bounds_hold_for_mimic_joints(numbers: str, lower: float, upper: float, velocity: float, write) -> None:
     (a, b), _ = read_urdf(write(three_links(Z + LIMIT, mimic("a", numbers))), "tip")
     assert (a.type, a.lower, a.upper, a.velocity) == ("revolute", lower, upper, velocity)
     assert (b.lower, b.upper, b.velocity) == (-1, 2, 3)
 
 
-def test_continuous_joint_is_bounded_by_those_that_mimic_it(write) -> None:
+def test_continuous_joint_is_bounded_by_its_mimic_joints(write) -> None:
     text = three_links(Z, mimic("a")).replace("revolute", "continuous", 1)
     (a, _), _ = read_urdf(write(text), "tip")
     assert (a.type, a.lower, a.upper, a.velocity) == ("revolute", -1, 2, 3)
@@ -354,7 +354,7 @@ def test_continuous_joint_is_bounded_by_those_that_mimic_it(write) -> None:
     assert (a.type, a.lower, a.upper, a.velocity) == ("continuous", -inf, inf, 3)
 
 
-def test_mimic_of_a_joint_between_them_that_is_elsewhere(write) -> None:
+def test_mimic_through_a_joint_outside_the_chain(write) -> None:
     """b mimics c, which mimics a: c is not between base and tip, but determines how b follows a."""
     text = robot(
         link("base", "mid", "tip", "eye"),
@@ -388,7 +388,7 @@ GRIPPER = robot(
 )
 
 
-def test_follower_of_a_joint_off_the_way_is_held(write) -> None:
+def test_follower_of_a_joint_outside_the_chain_is_held(write) -> None:
     file = write(GRIPPER)
     with pytest.warns(UserWarning, match="is held") as said:
         joints, tip = read_urdf(file, "pad")
@@ -415,7 +415,7 @@ def test_warning_points_to_the_caller(write) -> None:
     assert said[0].filename == __file__
 
 
-def test_held_joint_is_where_pinocchio_has_it(write) -> None:
+def test_held_joint_agrees_with_pinocchio(write) -> None:
     """Pinocchio has the finger as a joint of its own, which stays at zero here; it knows no mimic of a mimic."""
     pin = pytest.importorskip("pinocchio")
     of_finger = '<mimic joint="finger" multiplier="-1" offset="0.72"/>'
@@ -584,7 +584,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize(("text", "message"), REFUSED.items(), ids=range(len(REFUSED)))
-def test_refused(text: str, message: str, write) -> None:
+def test_invalid_urdf_is_rejected(text: str, message: str, write) -> None:
     assert refusal(write(text)) == message
 
 
@@ -621,7 +621,7 @@ def test_links_with_no_chain_between(tip: str, base: str, message: str, write) -
         ("hand", "", "base = '': must be a link; its branches end in 'hand', 'right'"),
     ],
 )
-def test_names_of_no_links(tip: str, base: str | None, message: str, write) -> None:
+def test_unknown_links_are_rejected(tip: str, base: str | None, message: str, write) -> None:
     with pytest.raises(ParameterError) as caught:
         read_urdf(write(TREE), tip, base)
     assert str(caught.value) == message
@@ -642,7 +642,7 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
         read_urdf(0, "tip")  # type: ignore[arg-type]  # Not the standard input.
 
 
-def test_needs_the_standard_library_alone(tmp_path: Path) -> None:
+def test_requires_only_the_standard_library(tmp_path: Path) -> None:
     (tmp_path / "arm.urdf").write_text(TREE)
     program = (
         "import sys, fpbm_cpp as fp\n"
@@ -709,7 +709,7 @@ HOSTILE = {
 
 
 @pytest.mark.parametrize(("make", "message"), HOSTILE.values(), ids=HOSTILE)
-def test_hostile(make: Callable[[], str | bytes], message: str, write) -> None:
+def test_malicious_file_is_rejected(make: Callable[[], str | bytes], message: str, write) -> None:
     assert refusal(write(make())) == message
 
 
@@ -721,7 +721,7 @@ def test_gigantic_file(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/zero"), reason="no /dev/zero")
-def test_endless_file() -> None:
+def test_infinite_file_is_rejected() -> None:
     assert refusal(Path("/dev/zero")) == f"has more than 16 MiB: {ROBOT_FILE}"
 
 
@@ -745,7 +745,7 @@ def test_long_chain(length: int, write) -> None:
 
 @settings(max_examples=200, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(at=st.floats(0, 1), length=st.integers(0, 60), instead=st.text(max_size=20) | st.sampled_from(["nan", "<", "0"]))
-def test_damaged_file_is_read_or_refused(at: float, length: int, instead: str, write) -> None:
+def test_damaged_file_is_read_or_rejected(at: float, length: int, instead: str, write) -> None:
     text = three_links('<origin xyz="0 0 1" rpy="0 0 0"/>' + Z + LIMIT, mimic("a", 'multiplier="0.5"'))
     begin = int(at * len(text))
     file = write((text[:begin] + instead + text[begin + length :]).encode(errors="replace"))
@@ -804,7 +804,7 @@ KNOWN_REASONS = ("must be 1 to 64", "must have a drive", "must be positive", "mu
 
 @with_robots
 @pytest.mark.parametrize("model", ["panda", "ur", "tiago", "talos", "romeo", "baxter", "pr2", "kinova", "iris", "icub"])
-def test_each_branch_is_read_or_refused(model: str) -> None:
+def test_each_branch_is_read_or_rejected(model: str) -> None:
     files = sorted(file for folder in ROBOTS.glob(f"{model}_*") for file in folder.rglob("*.urdf"))[:2]
     assert files
     for file in files:

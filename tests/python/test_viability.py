@@ -85,7 +85,7 @@ def random_states(rng: np.random.Generator, tick: float) -> Array:
 
 
 @pytest.mark.skipif(not shutil.which("g++") or not EIGEN.exists(), reason="needs g++ and Eigen")
-def test_no_state_may_do_what_tsid_forbids(tmp_path: Path) -> None:
+def test_bounds_are_within_those_of_tsid(tmp_path: Path) -> None:
     rng = np.random.default_rng(4)
     blocks = [random_states(rng, 10 ** rng.uniform(-4, -2)) for _ in range(ROUNDS)]
     theirs = np.concatenate([their_bounds(block, float(block[0, 4])) for block in blocks])

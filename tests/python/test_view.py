@@ -75,7 +75,7 @@ def same(run, expected):
         assert getattr(run, name).tobytes() == getattr(expected, name).tobytes(), name
 
 
-def test_what_is_shown_is_simulated(viewer):
+def test_the_shown_run_equals_the_simulation(viewer):
     arm, path, q0 = viewer.run.arm, viewer.run.path, viewer.run.q[0]
     for scheme in (fpbm(), fp.MVN(k=5), fp.WMVN([4, 3, 2, 1]), fp.MAN(), fp.Balanced(0.2, np.ones(4))):
         viewer.scheme = scheme
@@ -90,7 +90,7 @@ def test_what_is_shown_is_simulated(viewer):
         np.testing.assert_array_equal(np.transpose(drawn[1:-1]), expected.qd)
 
 
-def test_time_moves_the_arm(viewer):
+def test_the_arm_is_shown_at_the_selected_time(viewer):
     run = viewer.run
     for moment in (0.0, 0.5, 1.234, 3.0):
         viewer.time = moment
@@ -116,7 +116,7 @@ CLEARANCE = fp.Clearance(LINKS, AROUND)
 WIDE = fp.JointLimits(lower=[-3] * 4, upper=[3] * 4, velocity=[2] * 4, acceleration=[10] * 4)
 
 
-def test_what_is_kept_clear_of_is_drawn_and_said():
+def test_the_clearance_is_drawn_and_reported():
     arm = fp.PlanarArm([1, 1, 1, 1])
     run = fp.track(arm, fp.Line([0, -2.5], 2.0), fpbm(), Q0, dt=0.01, limits=WIDE, clearance=CLEARANCE)
     with Viewer(run, port=0) as viewer:
@@ -185,7 +185,7 @@ def test_a_run_of_a_stack_is_shown(move):
         np.testing.assert_allclose(viewer.run.q, run.q, atol=1e-6)  # The law of a balance without feedback.
 
 
-def test_a_run_of_a_stack_that_cannot_begin():
+def test_a_stack_run_without_samples_is_shown():
     run = a_stack_run()
     names = [name for name in run.arrays() if name != "q"]
     none = {name: getattr(run, name)[:0] for name in names}
@@ -195,7 +195,7 @@ def test_a_run_of_a_stack_that_cannot_begin():
         assert "error of hand, orientation" in say(viewer)
 
 
-def test_nothing_is_drawn_of_a_run_that_keeps_clear_of_nothing(viewer):
+def test_no_shapes_are_drawn_without_a_clearance(viewer):
     assert viewer._scene._shapes is None
     assert "nearest shapes" not in say(viewer)
     assert "distance of the nearest shapes" not in viewer._chart._quantity.options
@@ -203,7 +203,7 @@ def test_nothing_is_drawn_of_a_run_that_keeps_clear_of_nothing(viewer):
 
 @given(st.integers(0, 10**6))
 @settings(deadline=None, max_examples=200)
-def test_the_line_is_as_long_as_the_shapes_are_apart(seed):
+def test_the_line_is_as_long_as_the_distance_of_the_shapes(seed):
     rng = np.random.default_rng(seed)
     arm = fp.SerialArm.preset("panda")
     pose = np.eye(4)
@@ -246,7 +246,7 @@ def test_the_page_chooses_schemes_and_gains(viewer):
     assert repr(viewer.scheme) == repr(fpbm())
 
 
-def test_what_is_set_from_here_is_run_once(viewer, monkeypatch):
+def test_a_scheme_that_is_set_runs_once(viewer, monkeypatch):
     runs = []
     rerun = viewer_module.rerun
     monkeypatch.setattr(viewer_module, "rerun", lambda *given: runs.append(given) or rerun(*given))
@@ -254,7 +254,7 @@ def test_what_is_set_from_here_is_run_once(viewer, monkeypatch):
     assert len(runs) == 1
 
 
-def test_gains_beyond_a_slider_make_room(viewer):
+def test_gains_beyond_a_slider_extend_its_range(viewer):
     viewer.scheme = fp.FPBM(0.6, [0.01, 1, 1, 400], 300, 9000)
     sliders = viewer._controls._sliders
     assert sliders["k1"].max == sliders["k1"].value == 300
@@ -285,7 +285,7 @@ def test_schemes_keep_their_options(scheme):
             np.testing.assert_array_equal(getattr(other, value), values[value])
 
 
-def test_sliders_are_those_of_the_declarations(viewer):
+def test_sliders_follow_the_declarations(viewer):
     sliders = viewer._controls._sliders
     assert list(sliders) == ["alpha", "k1", "k2", "null_damping", "k"]
     assert (sliders["alpha"].label, sliders["alpha"].max) == ("α", 1.0)
@@ -313,7 +313,7 @@ def test_a_motion_that_stops_early(viewer):
 
 
 @pytest.mark.parametrize("task", ["position", "pose"])
-def test_a_motion_that_cannot_begin(task):
+def test_a_motion_without_samples_is_shown(task):
     with a_viewer(fp.MVN(), q0=np.zeros(4), task=task) as viewer:
         assert len(viewer.run.t) == 0
         viewer.time = 1.0
@@ -322,7 +322,7 @@ def test_a_motion_that_cannot_begin(task):
         np.testing.assert_allclose(viewer._scene._tip.position, [4, 0, 0], atol=1e-6)
 
 
-def test_what_cannot_be_run_is_refused_and_the_rest_goes_on(viewer):
+def test_invalid_settings_are_rejected_and_the_viewer_continues(viewer):
     run = viewer.run
     with pytest.raises(ValueError, match="weights has 3 entries"):
         viewer.scheme = fp.WMVN([1, 2, 3])
@@ -341,7 +341,7 @@ def test_what_cannot_be_run_is_refused_and_the_rest_goes_on(viewer):
     assert "complete" in say(viewer)
 
 
-def test_many_changes_at_once(viewer):
+def test_simultaneous_changes_are_safe(viewer):
     slider = viewer._controls._sliders["alpha"]
 
     def change(value):
@@ -418,7 +418,7 @@ def test_a_finished_run():
         assert viewer.url in viewer._repr_html_()
 
 
-def test_what_is_said_is_no_markup(viewer):
+def test_reported_text_is_escaped(viewer):
     viewer._readout.refuse("k1 < 0 & <b>")
     assert "k1 &lt; 0 &amp; &lt;b&gt;" in say(viewer)
 
@@ -438,7 +438,7 @@ def test_limits_are_kept_on_request():
         assert not viewer._controls._limited.visible
 
 
-def test_the_limits_of_a_run_stay():
+def test_the_limits_of_a_run_are_kept():
     wide = np.full(4, 9.0)
     limits = fp.JointLimits(lower=-wide, upper=wide, velocity=np.full(4, 0.1), acceleration=wide)
     run = fp.track(fp.PlanarArm([1, 1, 1, 1]), fp.Circle(0.2, 2.0), fpbm(), Q0, dt=0.01, limits=limits)
@@ -487,7 +487,7 @@ def with_mimic():
     return fp.SerialArm(joints, frame)
 
 
-def test_links_and_joints_are_where_the_arm_has_them():
+def test_links_and_joints_have_the_positions_of_the_arm():
     arm = with_mimic()
     q = np.array([0.3, 0.4, -0.5, 0.6])
     with Viewer(fp.simulate(arm, fp.Line([0.01, 0, 0], 1.0), fp.MVN(), q, dt=0.01), port=0) as viewer:
@@ -551,7 +551,7 @@ def file(tmp_path):
 
 
 @pytest.mark.parametrize("base", [None, "foot", "upper"])
-def test_a_model_moves_as_the_arm_does(file, base):
+def test_a_model_has_the_frames_of_the_arm(file, base):
     arm = fp.SerialArm.from_urdf(file, tip="hand", base=base)
     model = Meshes(file, arm, np.zeros(arm.dof))
     assert model.found
@@ -592,7 +592,7 @@ def test_without_any_mesh_the_arm_is_drawn_from_its_links(file):
         assert isinstance(viewer._scene._arm, Links)
 
 
-def test_a_urdf_that_is_not_the_arms(file, tmp_path):
+def test_a_urdf_of_another_arm_is_rejected(file, tmp_path):
     arm = fp.SerialArm.from_urdf(file, tip="hand")
     longer = file.with_name("longer.urdf")
     longer.write_text(file.read_text().replace("0.1 0 0.2", "0.1 0 0.3"))
@@ -646,7 +646,7 @@ def test_a_port_in_use():
             Viewer(a_run(), port=port)
 
 
-def test_it_serves_until_it_is_closed():
+def test_the_server_runs_until_it_is_closed():
     viewer = a_viewer()
     with urllib.request.urlopen(viewer.url) as page:
         assert b"<html" in page.read()
@@ -667,7 +667,7 @@ print("closed")
 
 
 @pytest.mark.parametrize("call", ["fp.view(arm, path, scheme, q0, ", "fp.simulate(arm, path, scheme, q0).view("])
-def test_it_prints_its_address_and_ctrl_c_closes_it(call):
+def test_the_address_is_printed_and_ctrl_c_closes_the_server(call):
     command = [sys.executable, "-c", SCRIPT.format(call=f"{call}port=0, open_browser=False)")]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as child:
         said = child.stdout.readline()

@@ -39,7 +39,7 @@ def reach(robot, q0, **how):
 
 
 @pytest.mark.parametrize("base", [None, "planar"])
-def test_the_model_of_a_robot_moves_as_the_robot_does(tmp_path, base):
+def test_the_model_has_the_frames_of_the_robot(tmp_path, base):
     """Also its payload on a base that moves, and joints that it holds."""
     file, robot = torso(tmp_path, base, neck=0.4)
     rng = np.random.default_rng(1)
@@ -123,7 +123,7 @@ def test_each_hand_has_a_handle():
         assert max(ends.values()) < 1e-2  # The lines of both hands.
 
 
-def test_a_level_that_waits_is_named():
+def test_a_slowed_level_is_named():
     """The page does not report joint limits that do not slow the hands."""
     with hands() as servo:
         goal = servo.target["left_tip"].copy()
