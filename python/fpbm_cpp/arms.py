@@ -40,7 +40,7 @@ class JointLimits(Data):
     acceleration: ArrayField = parameter("Largest accelerations, in both directions.", BOUND, unit="rad/s^2")
     jerk: FilledArrayField = parameter("Largest jerks, in both directions.", BOUND, default=None, unit="rad/s^3")
     velocity_offset: FilledArrayField = parameter(
-        "Toward an end of the range, the velocity is at most -velocity_offset + sqrt(2 deceleration distance).",
+        "Toward an end of the range at distance d, the velocity is at most -velocity_offset + sqrt(2 deceleration d).",
         BOUND,
         default=None,
         unit="rad/s",
@@ -63,7 +63,9 @@ class Joint(Data):
     """One joint of a chain. For a prismatic joint, read m instead of rad."""
 
     type: str = parameter("Type of the joint.", default="revolute", choices=("revolute", "continuous", "prismatic"))
-    placement: ArrayField = parameter("Frame in the previous joint's frame, both at zero.", FRAME, default=IDENTITY)
+    placement: ArrayField = parameter(
+        "Frame of the joint in the previous joint's frame, with both joints at zero.", FRAME, default=IDENTITY
+    )
     axis: ArrayField = parameter("Axis in the joint's frame; its length is ignored.", default=(0, 0, 1), shape="(3,)")
     lower: float = parameter("Lower bound of the position.", default=-inf, infinite=True, unit="rad")
     upper: float = parameter("Upper bound of the position.", default=inf, infinite=True, unit="rad")
@@ -73,7 +75,7 @@ class Joint(Data):
     )
     jerk: float = parameter("Largest jerk, in both directions.", default=inf, infinite=True, unit="rad/s^3")
     velocity_offset: float = parameter(
-        "Toward an end of the range, the velocity is at most -velocity_offset + sqrt(2 deceleration distance).",
+        "Toward an end of the range at distance d, the velocity is at most -velocity_offset + sqrt(2 deceleration d).",
         default=0.0,
         unit="rad/s",
     )
@@ -200,8 +202,8 @@ class SerialArm(Arm):
         """Arm between two links of a URDF file: base (default: the root) and tip. Expand xacro first.
 
         Fixed joints become part of the frames. Bounds, names and mimic joints are kept. If the leader of a mimic joint
-        does not move between base and tip, the mimic joint is fixed at its position for the leader at zero, with a
-        UserWarning.
+        is not a moving joint between base and tip, a UserWarning is issued, and the mimic joint is fixed at its
+        position for the leader at zero.
 
         Raises ValueError if the file is not a valid URDF or has no chain between the links, OSError if the file cannot
         be read.

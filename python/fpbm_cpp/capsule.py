@@ -13,7 +13,7 @@ from .parameter import NOT_NEGATIVE, Data, data, parameter
 class Capsule(Data, Shape):
     """All points within a radius of a segment that is fixed to a link; a ball if both ends of the segment coincide.
 
-    The link of an obstacle is 0, the base. Raises ParameterError.
+    The link of an obstacle is 0, the base. Raises ParameterError if an argument is out of range.
     """
 
     kind: ClassVar[str] = "capsule"

@@ -28,12 +28,12 @@ PLANAR_BASE = {"base_x", "base_y", "base_yaw"}  # Joints of Robot.from_urdf(base
 class Clearance(Data):
     """Self-collision and obstacles that an arm or a Robot avoids, with a margin.
 
-    The checked pairs are all capsules of two links that are not adjacent, on one branch of a Robot or on two, and each
-    capsule of a moving link with each obstacle. Pairs that overlap in every posture and allowed pairs are not checked.
-    Shapes without a name get a default: 'link_3' for a capsule, 'obstacle_1' for an obstacle.
+    Two kinds of pairs are checked: capsules of two links that are not adjacent, also on different branches of a Robot;
+    and each capsule of a moving link with each obstacle. Pairs that overlap in every posture and allowed pairs are not
+    checked. Shapes without a name get a default: 'link_3' for a capsule, 'obstacle_1' for an obstacle.
 
     Raises ParameterError if a shape has a wrong type, an obstacle is not in the base frame, two obstacles share a name,
-    or no shape has an allowed name.
+    or `allowed` contains a name that no shape has.
     """
 
     kind: ClassVar[str] = "clearance"
@@ -51,7 +51,7 @@ class Clearance(Data):
         unit="rad/(m s^2)",
     )
     away_range: float = parameter(
-        "Distance beyond the margin below which away_gain acts.", POSITIVE, default=0.1, unit="m"
+        "away_gain acts on shapes that are closer than the margin plus this distance.", POSITIVE, default=0.1, unit="m"
     )
 
     def _finish(self) -> None:
@@ -83,7 +83,7 @@ class Clearance(Data):
     def preset(cls, name: str, *, obstacles: Sequence[Obstacle] = (), margin: float = MARGIN) -> Clearance:
         """Clearance of SerialArm.preset(name) or Robot.preset(name), with capsules that contain the maker's meshes.
 
-        Tools have no capsules. Pairs of links that cannot meet within the joint bounds are allowed pairs. Raises
+        Tools have no capsules. Pairs of links that cannot collide within the joint bounds are allowed pairs. Raises
         ParameterError if the preset does not exist.
         """
         links, allowed = preset_capsules(name)
@@ -154,14 +154,15 @@ class Clearance(Data):
         positions at which the robot fixes them.
 
         Each link gets one capsule, or up to per_link capsules if their volume is smaller. Unless per_link is 1, a link
-        gets one more capsule if capsules of two links would often be closer than the margin and the links are not.
-        srdf is an SRDF file of MoveIt, whose disabled pairs are allowed pairs, in addition to `allowed`. Needs the
-        extra 'clearance', of which trimesh and pycollada are for meshes only.
+        gets one more capsule if its capsules would often be closer than the margin to the capsules of another link
+        although the distance of the two links is larger. srdf is an SRDF file of MoveIt, whose disabled pairs are
+        allowed pairs, in addition to `allowed`. Needs the extra 'clearance'; only meshes need its packages trimesh and
+        pycollada.
 
         postures, of shape (n,) or (k, n) [rad] or [m], are postures in which the clearance must accept the robot. If
-        capsules of two links are closer than the margin there, the links get up to 8 capsules each, unless their meshes
-        are closer than the margin too. Default: the group states of the SRDF file that have all joints of the robot and
-        no others, with a planar base at zero; none if per_link is 1.
+        the capsules of two links are closer than the margin in one of these postures, the links get up to 8 capsules
+        each, unless the meshes of the links are also closer than the margin. Default: the group states of the SRDF file
+        that have all joints of the robot and no others, with a planar base at zero; none if per_link is 1.
 
         Raises ParameterError if postures have a wrong shape or are not finite, or an argument is for another kind of
         robot; ValueError if a file is not valid; OSError if a file cannot be read.
@@ -195,7 +196,8 @@ class Clearance(Data):
     def nearest(self, arm: Arm | Robot, q: ArrayLike) -> Nearest | None:
         """The nearest checked pair of shapes in a posture q, shape (n,) [rad]; None if no pair is checked.
 
-        Raises ParameterError if q is not a posture of the arm or the robot, or a capsule is on a link that it lacks.
+        Raises ParameterError if q is not a posture of the arm or the robot, or if a capsule is on a link that does not
+        exist.
         """
         return self._of(arm).nearest(q)
 
@@ -216,7 +218,7 @@ class Clearance(Data):
 
 
 def _postures(joints: Sequence[Joint], given: ArrayLike | None, srdf: str | os.PathLike[str] | None) -> Array | None:
-    """Positions (k, N) of all joints in the given postures or an SRDF file; None if there are none."""
+    """Positions (k, N) of all joints in the given postures or the SRDF file's group states; None without postures."""
     from .io.capsule_gaps import follow
     from .io.srdf import read_group_states
 

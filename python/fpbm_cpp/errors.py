@@ -54,7 +54,7 @@ def suggestion(word: object, words: Iterable[str]) -> str:
 
 
 def extra(library: str, user: str, name: str) -> Any:
-    """The library of an extra. If the library is missing, raises ImportError with the extra that user needs."""
+    """Import a library of the extra `name`. If the library is missing, raises ImportError: `user` needs the extra."""
     try:
         return import_module(library)
     except ImportError:

@@ -31,7 +31,7 @@ class Parameter:
     """Declaration of a parameter."""
 
     name: str = ""
-    type: type = object  # float, int, str, numpy.ndarray, or object for all else.
+    type: type = object  # float, int, str, numpy.ndarray, or object for any other type.
     annotation: str = ""  # The type as written in the source.
     default: Any = REQUIRED  # Default of constructors.
     usual: Any = REQUIRED  # Default of jobs and of the command line.
@@ -73,7 +73,7 @@ class Parameter:
         if value is None and self.default is None:
             return value
         if type(value) is float and self.type is float and self._has(value) and math.isfinite(value):
-            return value  # The common case, ten times as fast without NumPy.
+            return value  # Most values are numbers; their check is ten times as fast without NumPy.
         if isinstance(value, str) and self.choices:
             if value not in self.choices:
                 raise not_one_of(self.name, value, self.choices)
@@ -128,8 +128,8 @@ ANY = Parameter()
 def parameter(help: str = "", like: Parameter = ANY, *, default: Any = REQUIRED, **known: Any) -> Any:
     """Declare a parameter as a field of a data class: `radius: float = parameter("Radius.", POSITIVE, unit="m")`.
 
-    Keyword arguments are fields of Parameter; all others are those of `like`. If `like` has no usual value, the usual
-    value is the default.
+    Keyword arguments are fields of Parameter; all other fields are those of `like`. If `like` has no usual value, the
+    usual value is the default.
     """
     usual = default if like.usual is REQUIRED else like.usual
     declared = replace(like, help=help or like.help, default=default, **{"usual": usual, **known})
@@ -154,7 +154,7 @@ parameters: Callable[[Callable[..., Any]], dict[str, Parameter]] = cache(_parame
 
 
 class Data:
-    """A frozen data class that can be pickled. repr() is the call that makes an equal object, and defines equality."""
+    """A frozen data class that can be pickled. repr() is a constructor call; objects with equal repr() are equal."""
 
     def __post_init__(self) -> None:
         for name, declared in parameters(type(self)).items():

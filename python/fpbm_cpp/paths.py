@@ -58,7 +58,7 @@ class Path(Data, CorePath):
         return WithRotation(self, rotation, time_law=time_law)
 
     def then(self, path: Path) -> Path:
-        """This path, followed by another path from its end."""
+        """This path, followed by another path that starts at the end of this path."""
         return Sequence((self, path))
 
     def _finish(self) -> None:
@@ -129,8 +129,8 @@ class Waypoints(Path):
     The path is a quintic spline, which minimises the squared jerk through the points at the given times. Acceleration
     is continuous everywhere, also at the ends. Orientations are splines of quaternions, along the shorter rotation.
 
-    Give one of: the duration, which is divided among the pieces by their lengths; the times; or bounds of the tip's
-    motion, for the shortest duration within the bounds, to 1 %, rounded up to 0.01 s.
+    Give the duration, the times, or bounds of the tip's motion. A duration is divided among the pieces by their
+    lengths. With bounds, the duration is the shortest duration within the bounds, to 1 %, rounded up to 0.01 s.
     """
 
     kind = "waypoints"
@@ -150,7 +150,7 @@ class Waypoints(Path):
     )
 
     def __post_init__(self) -> None:
-        if isinstance(self.duration, _Derived):  # From dataclasses.replace().
+        if isinstance(self.duration, _Derived):  # dataclasses.replace() passes the derived duration.
             object.__setattr__(self, "duration", None)
         super().__post_init__()
         if self.duration is None:

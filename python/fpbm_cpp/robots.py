@@ -98,7 +98,7 @@ class Robot(Data, CoreRobot):
     def from_arms(cls, arms: Mapping[str, SerialArm], placements: Mapping[str, ArrayLike] | None = None) -> Robot:
         """Robot of several arms by name. A (4, 4) matrix places each arm in the base frame; default: identity.
 
-        Joint 'joint1' of arm 'left' becomes 'left_joint1', and its tip becomes the frame 'left_tip'.
+        Joint 'joint1' of arm 'left' becomes 'left_joint1', and the tip of arm 'left' becomes the frame 'left_tip'.
         """
         joints: list[TreeJoint] = []
         frames = []

@@ -141,5 +141,5 @@ class FPBM(AccelerationScheme):
     k2: float = parameter("Feedback gain on position.", NOT_NEGATIVE, usual=25.0, unit="1/s^2")
 
 
-# By the kind in a table.
+# Classes of schemes, by the kind in a table.
 SCHEMES: dict[str, type[Scheme]] = {each.kind: each for each in (MVN, WMVN, MAN, WMVNAcceleration, Balanced, FPBM)}

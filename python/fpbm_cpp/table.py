@@ -4,7 +4,8 @@
 
 A table has the kind of its object and the parameters by name. The table of a path may also have in_plane,
 with_rotation and rotation_time_law. Several paths, one after another, are a list of tables; paths of several tasks are
-a table of these by task name. A stack is a list of tables of tasks, each with its level, counted from 0.
+a table with a path, or a list of paths, for each task name. A stack is a list of tables of tasks, each with its level,
+counted from 0.
 """
 
 import math
@@ -109,7 +110,7 @@ def from_table(table: Any, kinds: Makers = KINDS, name: str = "") -> Any:
 
 
 def problems(table: Any, kinds: Makers, name: str = "", *, usual: bool = False) -> list[ParameterError]:
-    """All errors in the keys and values of a table, without its arm. usual: keys with usual values may be missing."""
+    """Errors in the keys and values of a table, found without its arm. usual: keys with usual values may be missing."""
     reader = _Reader(usual, make=False)
     reader.read(table, kinds, name)
     return reader.problems

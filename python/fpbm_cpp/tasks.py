@@ -22,9 +22,11 @@ FRAME = (
 )
 REFERENCE = "Frame that replaces the base frame for the point, the rows and the path of the task."
 TARGET = "Target if no path or reference is given; default: the start."
-OFFSET = Parameter(default=None, shape="(4, 4)", unit="m", help="Pose of the task's frame in that frame.")
+OFFSET = Parameter(default=None, shape="(4, 4)", unit="m", help="Pose of the task's frame relative to `frame`.")
 ROWS = "Selected rows of the task, out of x, y, z, rx, ry, rz; None: all."
-AXES = Parameter(default="base", usual="base", choices=("base", "frame"), help="Frame whose axes the rows are along.")
+AXES = Parameter(
+    default="base", usual="base", choices=("base", "frame"), help="The rows are along the axes of this frame."
+)
 
 
 @data
@@ -124,7 +126,7 @@ class PoseTask(RowsTask):
 class RelativePoseTask(PoseTask):
     """The pose of a frame in another frame of the robot, as in a grasp with two hands. Its point has shape (4, 4) [m].
 
-    PositionTask, OrientationTask and AxisTask with reference_frame= are relative too.
+    With reference_frame=, a PositionTask, OrientationTask or AxisTask is also relative to that frame.
     """
 
     kind = "relative_pose"
@@ -183,7 +185,7 @@ class PostureTask(Task):
         object.__setattr__(self, "joints", names)
 
 
-# By the kind in a table.
+# Classes of tasks, by the kind in a table.
 TASKS: dict[str, type[Task]] = {
     each.kind: each
     for each in (

@@ -1,7 +1,7 @@
-"""Motions with the longest known ticks, and the times of their ticks on this machine, called from Python.
+"""Motions with the longest known ticks, and the times of these ticks on this machine if Python calls them.
 
-bench/search_worst.cpp found the motions, by the number of executed basic blocks. worst_motions.txt has the numbers of
-each motion; bench/worst.hpp defines the numbers and reads the same file.
+bench/search_worst.cpp found the motions with the largest number of executed basic blocks. worst_motions.txt has the
+numbers that define each motion. bench/worst.hpp explains these numbers and reads the same file.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from .tasks import PoseTask, PositionTask, PostureTask, Stack
 
 PHASES, NUMBERS = 6, 13
 FAR, TURN, FAST = 0.8, 1.5, 1.5  # Largest displacement [m], rotation [rad] and rates [m/s, rad/s] along each axis.
-SHORTEST, LONGEST = 10, 160  # Ticks of a phase.
+SHORTEST, LONGEST = 10, 160  # Least and largest number of ticks of a phase.
 DT = 1e-3
 PASSES = 3  # Largest number of passes of a saturation per joint.
 
@@ -40,7 +40,7 @@ class Times(NamedTuple):
 
 
 def motions() -> dict[str, Array]:
-    """The numbers of each case of one arm; bench/worst.cpp also has a clearance and two arms."""
+    """Numbers of the cases with one arm and no clearance; bench/worst.cpp also has a clearance and two arms."""
     text = (resources.files(__package__) / "worst_motions.txt").read_text(encoding="utf-8")
     lines = [line.split() for line in text.splitlines()]
     return {
