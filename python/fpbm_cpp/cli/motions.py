@@ -93,7 +93,7 @@ def compare(request: Request, schemes: str | None, out: Path | None, dark: bool)
     motions = {kind: request.motion(kind) for kind in kinds}
     with request.plain():
         runs = {kind: motion.run() for kind, motion in motions.items()}
-    chosen = motions.get(request.scheme, motions[kinds[-1]])  # Usually has the options of all schemes.
+    chosen = motions.get(request.scheme, motions[kinds[-1]])  # Usually, its table has the options of all schemes.
     request.say(chosen, scheme=False)
     remarks: dict[str, list[str]] = {}
     for kind, run in runs.items():
@@ -161,10 +161,10 @@ def servo(request: Request, port: int, browser: bool) -> None:
     """Drag a handle in the browser; the tip of the arm follows within the joint limits.
 
     The tracker runs 1000 ticks per second on this machine's clock. A chart shows how close the joints are to their
-    bounds, and a sentence shows what keeps the arm from the handle. The meshes of a URDF file and the shapes of the
-    clearance are drawn; arrows move obstacles that are boxes or capsules. If a job has tasks, each task has a handle.
-    For a robot, each --task is a frame with a handle: pose tasks, two on each level, and a posture task on the level
-    below. Ctrl-C ends the command. For ARM and the options, see track; the path of a job is ignored.
+    bounds, and a sentence gives the reason if the arm does not reach the handle. The meshes of a URDF file and the
+    shapes of the clearance are drawn; arrows move obstacles that are boxes or capsules. If a job has tasks, each task
+    has a handle. For a robot, each --task is a frame with a handle: pose tasks, two on each level, and a posture task
+    on the level below. Ctrl-C ends the command. For ARM and the options, see track; the path of a job is ignored.
     """
     motion = request.motion(at_rest=True, limited=True)
     with _served():

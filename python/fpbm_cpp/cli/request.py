@@ -103,7 +103,7 @@ def _job_options(kind: bool, path: bool, clear: bool) -> Iterator[JobOption]:
         for key in dict.fromkeys(key for each in keys for key in keys[each]):
             having = [each for each in keys if key in keys[each]]
             yield _option(section, key, keys[having[0]][key], of=having if len(having) < 3 else [])
-    text = "Keep the arm's limits, with the changes below. If it has no acceleration bounds, give some, say 10 rad/s^2."
+    text = "Keep the arm's limits, with the changes below. Arms without acceleration bounds need some: e.g. 10 rad/s^2."
     if path:
         yield JobOption("limits", "keep", "--limits/--no-limits", help=text)
     for key, declared in known("limits").items():
@@ -133,7 +133,7 @@ def _option(section: str, key: str, declared: Parameter, prefix: str = "", of: S
 def motion_command(
     short_help: str, examples: str, *, kind: bool = True, path: bool = True, clear: bool = False
 ) -> Callable[[Callable[..., None]], Plain]:
-    """A command with its function's name, which gets a Request from ARM, --job, --save-job and the job's options."""
+    """Decorator for a command that calls its function with a Request from ARM, --job, --save-job and the options."""
 
     def make(function: Callable[..., None]) -> Plain:
         ours = list(_job_options(kind, path, clear))
@@ -178,7 +178,7 @@ class Request:
         names = {f"{option.section}.{option.key}": option for option in values}
         self.flags = {key: each.opts[0] for key, each in names.items() if each in given or key not in said}
         if isinstance(self.table.get("task"), list) and names["run.task"] in given:
-            self.flags["run.frame"] = "--task"  # --task made the tasks.
+            self.flags["run.frame"] = "--task"  # The option --task constructs the tasks.
 
     @property
     def scheme(self) -> str:
@@ -250,7 +250,7 @@ class Request:
         self.table[section] = {**there, key: value}
 
     def _put_tasks(self, tasks: Sequence[str]) -> None:
-        """Task of the tip, or task that follows the path; for a robot without tasks, frames that get pose tasks."""
+        """Set the task of the tip, or of the path; for a robot without tasks, add a pose task for each frame."""
         arm = self.table.get("arm", {})
         is_robot = arm.get("kind") == "robot" or arm.get("name") in ROBOT_PRESETS
         is_robot |= arm.get("kind") == "urdf" and "tip" not in arm and not set(tasks) & set(WORDS["task"])
