@@ -2,8 +2,8 @@
 
 A capsule is the set of points within a radius r of a segment from a to b. The volume pi r^2 |b - a| + 4/3 pi r^3 of a
 capsule that contains the points is minimised over a, b and r by sequential quadratic programming, as in El Khoury,
-"Planning optimal motions for anthropomorphic systems" (2013), 3.8.1. The starts are the best of many directions: on a
-given line, the best capsule is a search over r only. The result contains all points for every outcome of the search.
+"Planning optimal motions for anthropomorphic systems" (2013), 3.8.1. The search starts from the best capsules on lines
+of many directions. On a given line, only r is searched. The result contains all points for every outcome of the search.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from ..errors import extra
 
 DIRECTIONS = 80  # Directions of lines that are tried.
 STARTS = 4  # Lines at which the search starts.
-APART = 0.9  # Cosine of the least angle between two of these lines.
-BALL = 0.1  # Shorter capsules give two starts, one of them longer; the points are scaled to a ball of radius 1.
+APART = 0.9  # Cosine of the least angle between the lines of two starts.
+BALL = 0.1  # Length below which a capsule gives a second, longer start; the points are scaled to a unit ball.
 ACTIVE = 40  # Points in the first search; points outside its result are added.
 GOLDEN = (np.sqrt(5.0) - 1) / 2
 ROUNDS = 24  # Steps of the golden section on a line: the final interval is 1e-5 of the range of radii.
-MARKS = (np.sqrt(2.0), np.pi)  # Incommensurable, so that points with equal marks are equal up to round-off.
+MARKS = (np.sqrt(2.0), np.pi)  # Irrational factors: points with equal marks are equal up to round-off.
 ROOM = 1e-12  # Slack of the radius, relative to the coordinates, for round-off in distance computations.
 
 
@@ -91,7 +91,7 @@ def outermost(points: Array, radii: Array) -> tuple[Array, Array]:
         # Edges share their ends. Points with equal marks count once; enclosing() makes the result contain all points.
         mark = bare[:, 0] + MARKS[0] * bare[:, 1] + MARKS[1] * bare[:, 2]
         bare = bare[np.sort(np.unique(mark, return_index=True)[1])]
-        with suppress(spatial.QhullError):  # The points are flat, and usually few.
+        with suppress(spatial.QhullError):  # Coplanar points have no hull, and are usually few.
             bare = bare[spatial.ConvexHull(bare).vertices]
     balls = radii > 0.0
     return np.vstack([bare, points[balls]]), np.concatenate([np.zeros(len(bare)), radii[balls]])
@@ -153,7 +153,7 @@ def _on_lines(origins: Array, directions: Array, points: Array, radii: Array) ->
 
     least = np.max(d + radii, axis=1)
     middles = (s.min(axis=1) + s.max(axis=1)) / 2
-    most = np.max(np.hypot(s - middles[:, None], d) + radii, axis=1)  # Radius of a ball.
+    most = np.max(np.hypot(s - middles[:, None], d) + radii, axis=1)  # Radius of a ball around all points.
 
     def radius(x: Array) -> Array:  # The slope of the volume at the least radius may be infinite in r, not in x.
         return np.asarray(least + (most - least) * x * x)

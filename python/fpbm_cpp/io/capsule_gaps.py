@@ -19,10 +19,10 @@ from .urdf_shapes import Shape, together
 
 PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89, 97, 101, 103, 107)
 # tests/python/test_home_postures.py passes with these values; they are not from a parameter study.
-CLOSE = 1.2  # Capsules closer than CLOSE margins are close: a start at rest is accepted from one margin on.
-APART = 1.5  # Hulls farther apart than APART margins are not close; between the values, a cut is not worth a capsule.
-FIRST = 2  # Number of postures of which a single one makes a pair count: joints at zero, and in the middle.
-OFTEN = 0.25  # Fraction of the postures that makes a pair count.
+CLOSE = 1.2  # Capsules closer than CLOSE margins are too close; a start at rest needs one margin.
+APART = 1.5  # Links whose hulls are closer than APART margins are not cut: the gain is not worth a capsule.
+FIRST = 2  # The first FIRST postures, joints at zero and in the middle: a pair too close in one of them counts.
+OFTEN = 0.25  # A pair counts if it is too close in at least this fraction of the postures.
 OPEN = 3.0  # [rad] or [m], range of an unbounded joint on each side of zero.
 NORMALS = 200  # Directions of the first search for a gap between hulls.
 SPREADS = 0.1 * 0.6 ** np.arange(8)  # Spread about the best direction in each round of the search.
@@ -53,7 +53,7 @@ class Link:
 
 
 class Gaps:
-    """Pairs of non-adjacent links that are too close: capsules closer than CLOSE margins, hulls farther than APART.
+    """Pairs of non-adjacent links with capsules closer than CLOSE margins, but hulls farther apart than APART margins.
 
     A pair counts if it is too close in one of the first postures, or in a fraction OFTEN of all postures.
     """
@@ -80,7 +80,7 @@ class Gaps:
             self._weights[i, j] = np.where(np.array(wrong) < FIRST, 1.0, 1.0 / len(poses))
 
     def worst(self, but: Collection[tuple[int, int]]) -> tuple[int, int] | None:
-        """The pair with the largest excess of all pairs that count, except some; None if there is no pair."""
+        """The pair with the largest excess of all pairs that count, except `but`; None if there is no pair."""
         pairs = [pair for pair in self._cases if pair not in but and self._often(*pair) >= OFTEN]
         return max(pairs, key=lambda pair: self.excess(*pair), default=None)
 
@@ -152,7 +152,7 @@ def link_frames(joints: Sequence[TreeJoint], q: Array) -> Array:
 
 
 def capsules_apart(first: Sequence[Fit], second: Sequence[Fit], poses: Array) -> Array:
-    """Distances (count,) of two links' capsules; poses (count, 4, 4): of the second link in the first one's frame."""
+    """Distances (count,) of two links' capsules for poses (count, 4, 4) of the second link relative to the first link."""
     found = np.full(len(poses), np.inf)
     for one, two in product(first, second):
         a, b = (poses[:, :3, :3] @ end + poses[:, :3, 3] for end in (two.a, two.b))
@@ -161,7 +161,7 @@ def capsules_apart(first: Sequence[Fit], second: Sequence[Fit], poses: Array) ->
 
 
 def _segments_apart(p: Array, q: Array, a: Array, b: Array) -> Array:
-    """Distances (count,) between the segment p to q and segments a to b (count, 3): of inner points, or of an end."""
+    """Distances (count,) between the segment from p to q and the segments from a to b, each (count, 3)."""
     d, e, w = q - p, b - a, p - a
     dd, ee, de, dw, ew = d @ d, np.sum(e * e, axis=1), e @ d, w @ d, np.sum(e * w, axis=1)
     det = dd * ee - de * de

@@ -13,13 +13,13 @@ from ..robots import TreeJoint
 from .capsule_fit import enclosing, fit_capsule
 from .capsule_gaps import Link, Part, capsules_apart, link_frames, postures
 
-MOST = 8  # Capsules that a link may have: TIAGo's torso needs 5 in its home posture.
-PLACES = 6  # Number of equal parts of a shape at whose ends a cut in two is tried.
+MOST = 8  # Largest number of capsules of a link: TIAGo's torso needs 5 in its home posture.
+PLACES = 6  # A shape is cut in two at the ends of this number of equal parts.
 SLABS = (3, 4, 5)  # Numbers of equal slabs that are tried.
 STEPS = (0.1, 0.2, 0.5, 1.0)  # Displacements of a capsule that are tried, in radii; not tuned.
 LEAST = 0.1  # Fraction of a part's missing distance that a cut must gain; not tuned.
 SPREAD = 64  # Postures, in addition to the required ones, that decide which pairs are close in all postures.
-ROOM = 1.01  # In margins: a posture in which capsules are one margin apart is accepted.
+ROOM = 1.01  # Required distance [margins]; Clearance accepts a posture with a distance of 1.
 ALIKE = 0.95  # Cosine of the angle between directions that count as equal.
 
 
@@ -46,7 +46,7 @@ class Postures:
         self.touching = {pair for pair in self.poses if self._touch(*pair)}
 
     def _touch(self, i: int, j: int) -> bool:
-        """Whether corners of the links are closer than the margin; then capsules that contain them are too."""
+        """Whether corners of the links, and thus their capsules, are closer than the margin in a required posture."""
         spatial = extra("scipy.spatial", "a capsule that fits", "clearance")
         one, other = (np.vstack([part.shape.points for part in self.links[k].parts]) for k in (i, j))
         tree = spatial.cKDTree(one)
@@ -81,7 +81,7 @@ class Postures:
         return total
 
     def worst(self, given_up: Collection[tuple[int, int]]) -> tuple[int, int] | None:
-        """The pair with the largest missing distance of all pairs that do not touch; None if none is missing."""
+        """The pair with the largest missing distance of all pairs that do not touch; None if it is 0."""
         lacks = {
             (i, j): self.lack(i, j, self.links[i].parts, self.links[j].parts)
             for i, j in self.poses
@@ -94,15 +94,15 @@ class Postures:
 def clear(
     links: list[Link], joints: list[TreeJoint], required: Array, margin: float, but: Collection[tuple[int, int]] = ()
 ) -> None:
-    """Change capsules until they keep the margin in the required postures (k, n) if the links do, except some pairs.
+    """Change capsules of links that keep the margin in the required postures (k, n) until the capsules keep the margin.
 
-    Capsules are first moved, since a displacement adds no capsule: TIAGo then has 33 capsules, whereas 43 were not
-    enough if cuts came first. If no displacement helps, the cut with the largest gain per added capsule is made, of all
-    cuts of a pair's links.
+    Pairs of links in `but` are ignored. Capsules are first moved, since a displacement adds no capsule: TIAGo then has
+    33 capsules, whereas 43 were not enough if cuts came first. If no displacement helps, the cut with the largest gain
+    per added capsule is made, of all cuts of a pair's links.
     """
     state = Postures(links, joints, required, margin, but)
     given_up: set[tuple[int, int]] = set()
-    known: dict[int, tuple[Part, list[list[Part]]]] = {}  # By the part's id: it and its slabs.
+    known: dict[int, tuple[Part, list[list[Part]]]] = {}  # A part and its slabs, by the part's id.
 
     def slabs(part: Part) -> list[list[Part]]:
         if id(part) not in known:

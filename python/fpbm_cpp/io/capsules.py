@@ -21,10 +21,10 @@ from .urdf import Places, read_places
 from .urdf_shapes import Shape, read_shapes, together
 from .urdf_tree import read_tree
 
-FAIR = 0.85  # Several capsules have at most this fraction of the volume of one capsule.
-CUTS = 6  # Number of equal parts of a shape at whose ends a cut is tried.
+FAIR = 0.85  # A link gets several capsules if their volume is at most this fraction of the volume of one.
+CUTS = 6  # A shape is cut at the ends of this number of equal parts.
 ALIKE = 0.95  # Cosine of the angle between directions that count as equal.
-MANY = 12  # More shapes than this are not tried in groups.
+MANY = 12  # Largest number of shapes of a link for which groups of shapes are tried.
 POSTURES = 64  # Postures in which distances of links are compared.
 MORE = 1  # Additional capsules of a link above per_link, if its capsules are too close to others.
 GAIN = 0.8  # A finer cut reduces the excess of a pair to at most this fraction; not tuned.
@@ -46,16 +46,17 @@ def capsules_of(
     """Tight capsules that contain the collision geometry of the links of a URDF file. Deterministic.
 
     Each link has one capsule of least volume, or up to per_link capsules if their volume is at least 15 % smaller.
-    Unless per_link is 1 or finer is False, a link may have one more capsule if its capsules would be closer to another
-    link than a margin [m] and the links are not: see Gaps. In the required postures (k, n) [rad] or [m], capsules keep
-    the margin if clear() finds up to 8 capsules per link that do, except for allowed pairs of names.
+    Unless per_link is 1 or finer is False, a link may have one more capsule if its capsules would be closer to the
+    capsules of another link than a margin [m] although the links are not: see Gaps. In the required postures (k, n)
+    [rad] or [m], the capsules keep the margin if clear() finds capsules that keep the margin, at most 8 per link.
+    Allowed pairs of names are excepted.
 
     Without tip, the joints are those of Robot.from_urdf(path, base=base, locked=locked, tips=tips), which fixes all
-    other joints. With tip, the joints are those of SerialArm.from_urdf(path, tip, base). A link that no joint between
-    base and tip moves belongs to the base, and each other link to the last of these joints before it; this includes
-    tools and fingers beyond the tip. Joints that are not between base and tip are fixed at zero, so the capsules of a
-    gripper or of another arm are valid for that posture only. Visual geometry is not read: a link without collision
-    geometry has no capsule.
+    other joints. With tip, the joints are those of SerialArm.from_urdf(path, tip, base). Each link, also a tool or a
+    finger beyond the tip, belongs to the last joint between base and tip that moves the link. If no joint between base
+    and tip moves the link, the link belongs to the base. Joints that are not between base and tip are fixed at zero, so
+    the capsules of a gripper or of another arm are valid for that posture only. Visual geometry is not read: a link
+    without collision geometry has no capsule.
 
     Returns
     -------
@@ -118,7 +119,7 @@ def refine(links: list[Link], joints: list[TreeJoint], most: int, margin: float)
     """
     gaps = Gaps(links, link_frames(joints, postures([each.joint for each in joints], POSTURES)), margin)
     given_up: set[tuple[int, int]] = set()
-    known: dict[int, tuple[Part, list[list[Part]]]] = {}  # By the part's id: it and its halves.
+    known: dict[int, tuple[Part, list[list[Part]]]] = {}  # A part and its halves, by the part's id.
     while pair := gaps.worst(given_up):
         tried: list[tuple[float, int, list[Part]]] = []
         for i in pair:
@@ -147,7 +148,7 @@ def _halves(part: Part) -> Iterator[list[Part]]:
 
 
 def _parts_of(shapes: list[Shape], most: int) -> list[Part]:
-    """The parts of a link with a capsule each: one part, or several if that reduces the volume by 1 - FAIR."""
+    """The parts of a link with a capsule each: one part, or several parts if their volume is smaller by 1 - FAIR."""
     whole = together(shapes)
     parts = [_part(whole)]
     ways: list[Callable[[], list[Shape]]] = [lambda: _cut(whole, parts[0].fit, most)]

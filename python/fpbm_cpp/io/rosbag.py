@@ -25,7 +25,7 @@ def to_rosbag(run: Run, directory: str | os.PathLike[str], frame: str, trajector
     if target.exists() or target.is_symlink():
         raise FileExistsError(f"{target}: exists already: give a new directory, a bag does not replace files")
     store = typesys.get_typestore(typesys.Stores.ROS2_HUMBLE)
-    # The files of a bag have the name of the bag, so the name of the parent marks an unfinished bag.
+    # The files of a bag have the name of the bag: only the name of the parent folder can mark an unfinished bag.
     part = Path(tempfile.mkdtemp(prefix=f".{target.name}.", suffix=".part", dir=target.absolute().parent))
     try:
         # ROS 2 Humble cannot parse the QoS profiles of version 9; later releases read both versions.
@@ -69,10 +69,10 @@ def _messages(run: Run, types: Any, frame: str, trajectory: bool) -> Iterator[tu
 
 
 def _poses(run: Run, x: Array, reference: bool = False) -> tuple[Array, Array]:
-    """Positions in space, and quaternions: for a position task, the arm's; for the reference, the identity."""
+    """Positions in space, and quaternions; for a position task, the arm's orientation, or the reference's identity."""
     if x.ndim == 3:
         return x[:, :3, 3], quaternions(x[:, :3, :3])
-    if isinstance(run.arm, PlanarArm):  # In the xy plane.
+    if isinstance(run.arm, PlanarArm):  # A planar arm is in the xy plane.
         angles = x[:, 2] if run.kind == "pose" else np.zeros(len(x)) if reference else run.q.sum(axis=1)
         half, none = angles / 2, np.zeros(len(x))
         return np.column_stack([x[:, :2], none]), np.column_stack([none, none, np.sin(half), np.cos(half)])

@@ -1,4 +1,4 @@
-"""Chains of joints from URDF files. Names, numbers and the tree of the whole file must be valid, and the chain."""
+"""Chains of joints from URDF files. The names, numbers and tree of the whole file must be valid."""
 
 import difflib
 import os
@@ -20,7 +20,8 @@ from .urdf_file import ENVELOPE, UrdfJoint, read_robot
 
 TYPES = ("revolute", "continuous", "prismatic", "fixed")
 Tree = dict[str, "UrdfJoint | None"]  # The parent joint of each link, None for the root.
-Places = dict[str, tuple[int, Array]]  # By link: number of joints that move it, and its frame in the frame of the last.
+# For each link: number of joints that move the link, and the pose of the link in the frame of the last joint.
+Places = dict[str, tuple[int, Array]]
 Follow = tuple[str, float, float]  # Leader, ratio, offset: the position is ratio times the leader's plus offset.
 
 
@@ -124,7 +125,7 @@ def _hint(above: Tree, link: str) -> str:
     parents = {joint.parent for joint in above.values() if joint}
     leaves = (name for name in above if name not in parents)
     ends = sorted(leaves, key=lambda name: -_moving(_to_root(above, "tip", name)))
-    close = difflib.get_close_matches(link, list(above)[:300])  # Thousands would take long.
+    close = difflib.get_close_matches(link, list(above)[:300])  # A search of thousands of names is slow.
     return (f", perhaps {' or '.join(map(repr, close))}" if close else "") + f"; its branches end in {listed(ends)}"
 
 

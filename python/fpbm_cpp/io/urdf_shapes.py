@@ -16,7 +16,7 @@ from .mesh_file import find_mesh, read_mesh
 from .urdf import pose
 from .xml_file import Element, Kept, named, read_xml
 
-SIDES = 64  # Sides of the prism around a cylinder, which is 0.12 % wider.
+SIDES = 64  # Sides of the prism around a cylinder; the prism is 0.12 % wider than the cylinder.
 SHAPES = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",), "capsule": ("radius", "length")}
 KEPT: Kept = {
     ("robot",): {"link": ("name",)},
@@ -60,7 +60,7 @@ class Shape:
 
         A plane that cuts a face cuts its edges: the remaining parts of the edges and of the face have the same hull. At
         the plane, the face gets a new edge, which a later plane may cut. The new edge is inside the convex hull of the
-        section, whose sides are kept. A side joins the edges if a plane cuts it.
+        section; the sides of this hull are kept. If a plane cuts a side, the side joins the edges.
         """
         kept, cut = _clipped(self.edges, u, low, high)
         sides_kept, sides_cut = _clipped(self.sides, u, low, high)
@@ -97,7 +97,7 @@ def _section(points: Array, u: Array, bound: float) -> Array:
     across = np.linalg.svd(u[None, :])[2][1:]
     try:
         corners = spatial.ConvexHull(on @ across.T).simplices
-    except spatial.QhullError:  # On a line.
+    except spatial.QhullError:  # The points are on a line.
         along = (on - on[0]) @ np.linalg.svd(on - on.mean(axis=0), full_matrices=False)[2][0]
         corners = np.array([[np.argmin(along), np.argmax(along)]])
     sides: Array = on[corners]

@@ -164,7 +164,7 @@ def _moving_joint(joint: UrdfJoint, frame: Array) -> Joint:
 
 
 def _weights(places: Places, masses: Mapping[str, Mass], count: int) -> list[Mass]:
-    """Mass and centre of mass of each link of the robot, which may have several links of the file."""
+    """Mass and centre of mass of each link of the robot; a link may combine several links of the file."""
     total, moment = np.zeros(count), np.zeros((count, 3))
     for link, (mass, center) in masses.items():
         number, frame = places[link]

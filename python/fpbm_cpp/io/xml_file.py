@@ -13,7 +13,7 @@ from xml.parsers import expat
 MAX_BYTES = 16 * 2**20
 MAX_ELEMENTS = 50_000
 MAX_DEPTH = 64
-MAX_TEXT = 256  # Characters of an attribute.
+MAX_TEXT = 256  # Largest number of characters of an attribute.
 
 # Kept elements of a file and their kept attributes, by the enclosing elements.
 Kept = Mapping[tuple[str, ...], Mapping[str, tuple[str, ...]]]
