@@ -76,7 +76,7 @@ class Motion:
     scheme: Scheme
     options: RunOptions
     stack: Stack | None  # None if the tip's task is the only task.
-    limits: JointLimits | None  # None if they are not kept.
+    limits: JointLimits | None  # None if limits are not kept.
     clearance: Clearance | None  # Needs limits.
     bounds: tuple[TaskBounds, ...]  # Bounds of tasks; need limits.
 
@@ -158,7 +158,7 @@ def prepare(job: Table) -> Motion:
             alone = None if stack is None else without_limits(arm, stack, name)._replace(other_paths=others)
             check_sweep(arm, followed, [scheme], options.q0, options.dt, options.hold, kind, alone)
         except ValueError:
-            motion.run()  # Raises the same error, with the names in the job.
+            motion.run()  # Raises the error of check_sweep(), with the names in the job.
             raise
     return motion
 
@@ -168,7 +168,7 @@ def filled(job: Table, arm: Arm | Robot) -> Table:
     path = job.get("path", {"kind": FREE["path"]})
     pieces = {task: _filled_paths(each, arm) for task, each in _by_task(path).items()}
     pieces = pieces if is_by_task(path) else pieces[""]
-    gains = {"k1": 0.0, "k2": 0.0} if "task" in job else {}  # The tasks have gains.
+    gains = {"k1": 0.0, "k2": 0.0} if "task" in job else {}  # The gains are those of the tasks.
     scheme = dict(job.get("scheme", {"kind": FREE["scheme"]}))
     gains = {key: gain for key, gain in gains.items() if key in known("scheme", scheme.get("kind"))}
     scheme = _filled("scheme", {**gains, **scheme})
@@ -210,7 +210,7 @@ def taken(job: Table, full: Table) -> dict[str, list[str]]:
 
 
 def _taken(said: Any, full: Any) -> Iterator[str]:
-    """The same for a section."""
+    """Defaults in a full section."""
     if is_by_task(full):
         for task in full:
             yield from _taken(said.get(task, {}), full[task])
@@ -290,7 +290,7 @@ def _jacobians(arm: Arm | Robot, q: Array, task: str, stack: Stack | None) -> It
 
 
 def _bent(limits: JointLimits, middle: Array, jacobian: Jacobian, columns: Any) -> Array:
-    """The middle of the limits with the fewest displaced joints, about as far from singular as the best candidate."""
+    """The middle of the limits, with the fewest displaced joints for a GOOD inverse condition number."""
     room = np.minimum(BEND, (limits.upper - limits.lower) / 4)[columns]
     # The last joints vary first: on a long arm, the joints near the base stay in the middle.
     bends = np.array(list(islice(product((0.0, 1.0, -1.0), repeat=len(columns)), MOST)))
@@ -321,7 +321,7 @@ def write_job(job: Table, file: str | os.PathLike[str]) -> None:
     for each, key in _files(table):
         try:
             each[key] = FilePath(os.path.relpath(each[key], place.parent)).as_posix()
-        except ValueError:  # On another drive.
+        except ValueError:  # The two files are on different drives.
             each[key] = str(FilePath(each[key]).resolve())
     write_whole(place, f"# fpbm-cpp track --job {place.name}\n\n{tomlkit.dumps(table)}".encode())
 

@@ -38,12 +38,12 @@ class RunOptions(Data):
 # Kinds of each section. run and limits have one kind each, which is not in the file.
 SECTIONS: dict[str, Makers] = {
     "arm": ROBOTS,
-    "path": PATHS,  # Or a list of tables, of paths one after another; or a table of these by task name.
+    "path": PATHS,  # A list of tables is a sequence of paths. A table may have a path or a list for each task name.
     "scheme": SCHEMES,
     "task": TASKS,  # A list of tables: the tasks of a stack.
     "run": {"run": RunOptions},
     "limits": {JointLimits.kind: JointLimits},
-    "bounds": BOUNDS,  # A list of tables.
+    "bounds": BOUNDS,  # A list of tables: bounds of several tasks.
     "clearance": CLEARANCES,  # The kind depends on whether there are capsules.
 }
 FREE = {"path": "circle", "scheme": "fpbm"}  # The kind if the section is missing.
@@ -56,7 +56,7 @@ def known(section: str, kind: object = None) -> dict[str, Parameter]:
     return keys(maker) if maker else {}
 
 
-# The section of a key that the library names without its section.
+# The section of each key, because errors of the library have keys without a section.
 OWNERS = {
     key: section
     for section in ("clearance", "arm", "path", "limits", "scheme", "run")
@@ -94,7 +94,8 @@ def job_errors() -> Iterator[None]:
         yield
     except ParameterError as error:
         section, inside, _ = error.name.partition(".")
-        named = section.partition("[")[0] in SECTIONS and bool(inside or section != "task")  # task is run.task.
+        # The key task without a section is run.task.
+        named = section.partition("[")[0] in SECTIONS and bool(inside or section != "task")
         raise JobError(error if named else error.within(OWNERS.get(error.name, "run"))) from None
 
 
@@ -118,7 +119,7 @@ def make(section: str, said: Any, arm: Arm | Robot | None = None) -> Any:
 
 
 def _whole(section: str, said: Any, arm: Arm | Robot | None = None) -> Any:
-    """A section as a table of the library: with its only kind, and limits of all joints, by default the arm's."""
+    """A section as a table for from_table(): with its only kind, and limits of all joints, by default the arm's."""
     if section in ("task", "bounds") and isinstance(said, dict):
         said = [said]
     if section == "bounds" and isinstance(said, list):
@@ -128,12 +129,12 @@ def _whole(section: str, said: Any, arm: Arm | Robot | None = None) -> Any:
     if section == "clearance":
         said = with_kind(said)
     if section == "arm" and said.get("kind") == "urdf":
-        return {"tip": "", **said}  # Rejected later, with a list of the links.
+        return {"tip": "", **said}  # An empty tip is rejected later, with a list of the links.
     if section == "limits":
         own = {name: getattr(arm.limits, name).tolist() if arm else [inf] for name in known(section)}
         joints = arm.dof if arm else 1
         every = {key: [value] * joints for key, value in said.items() if isinstance(value, (int, float))}
         said = {**own, **said, **every}
     if section == "scheme" and "weights" in known(section, said.get("kind")):
-        return {"weights": [1.0], **said}  # Replaced by the default for the arm.
+        return {"weights": [1.0], **said}  # A placeholder for the default of the arm.
     return {"kind": section, **said} if len(SECTIONS[section]) == 1 else said
