@@ -27,7 +27,7 @@ template <typename Whole>
 /// Name of a constructor argument, or of a part of an argument, for error messages: element("joints", 2) + ".axis" is
 /// "joints[2].axis".
 ///
-/// Refers to its texts without a copy, and joins them only for a message: checks allocate no memory.
+/// An Argument refers to texts without a copy. text() joins the texts. Checks that pass therefore allocate no memory.
 class Argument {
  public:
   Argument(const char* name) : Argument(std::string_view(name)) {}

@@ -24,8 +24,8 @@ struct Direction {
     return {Scalar(0), Scalar(0), Scalar(1)};
   }
 
-  /// x ⊖ y: the rotation vector of the smallest rotation from y to x, perpendicular to x and y [rad]. If x = −y, a
-  /// rotation by π about an axis perpendicular to y.
+  /// x ⊖ y: the rotation vector of the smallest rotation from y to x, perpendicular to x and y [rad]. If x = −y, the
+  /// rotation is by π about an axis perpendicular to y.
   template <typename Scalar>
   [[nodiscard]] static Vector<3, Scalar> difference(const Point<Scalar>& x, const Point<Scalar>& y) noexcept {
     using std::atan2;
@@ -75,8 +75,8 @@ struct Direction {
  private:
   static constexpr double kPi = 3.14159265358979323846;
 
-  /// Largest |sin² + cos² − 1| of unit vectors [epsilon]. The round-off errors of normalized() and displace() cause up
-  /// to 8; a deviation of 16 changes a small angle by a relative error of 8 epsilon only.
+  /// Largest |sin² + cos² − 1| of unit vectors [epsilon]. The round-off errors of normalized() and displace() cause
+  /// values of up to 8. A value of 16 causes a relative error of only 8 epsilon in a small angle.
   static constexpr int kUnitTolerance = 16;
 };
 

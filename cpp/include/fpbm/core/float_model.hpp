@@ -4,9 +4,9 @@
 
 // The library requires IEEE 754 arithmetic.
 //
-// An infinite bound means that there is no bound, and an arm brakes if a value is NaN. If the compiler may assume that
-// neither value occurs, or may reorder sums, the results are wrong without an error. Compiler flags that permit this
-// are therefore rejected, as far as macros reveal them. g++ before version 12 only reveals that IEEE arithmetic is
+// An infinite bound means that there is no bound, and an arm brakes if a value is NaN. If compiler flags permit the
+// assumption that no value is infinite or NaN, or permit to reorder sums, the results are wrong without an error. These
+// flags are therefore rejected if a macro reveals the flag. g++ before version 12 only reveals that IEEE arithmetic is
 // incomplete. clang does not reveal -fassociative-math alone; the library is correct with this flag (sincos.hpp).
 #if defined(__FAST_MATH__) || defined(_M_FP_FAST) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0) ||    \
     defined(__ASSOCIATIVE_MATH__) || defined(__NO_SIGNED_ZEROS__) ||                                                   \
@@ -17,8 +17,8 @@
 
 namespace fpbm {
 
-/// Whether the result of an operation on doubles may have excess precision until it is stored: on the x87 FPU (g++
-/// -mfpmath=387, and 32-bit programs).
+/// Whether the results of operations on doubles may have excess precision before they are stored, as on the x87 FPU
+/// (g++ -mfpmath=387, and 32-bit programs).
 inline constexpr bool kHasExcessDigits = FLT_EVAL_METHOD == 2 || FLT_EVAL_METHOD < 0;
 
 }  // namespace fpbm

@@ -8,10 +8,11 @@ namespace fpbm {
 /// equal on all processors that round each product and each sum separately; C libraries differ in the last bit. Uses no
 /// double arithmetic, which small processors emulate in software.
 ///
-/// Cody-Waite reduction by multiples of π/2 in three parts (as in ReducedSinCos), then minimax polynomials on |r| ≤
-/// π/4, with relative errors of 3.8e-9 (sine) and 1.2e-10 (cosine).
+/// Cody-Waite reduction (see ReducedSinCos) by multiples of π/2 in three parts, then minimax polynomials on |r| ≤ π/4,
+/// with relative errors of 3.8e-9 (sine) and 1.2e-10 (cosine).
 struct FloatSinCos {
-  /// Up to here, k times each of the first two parts of π/2 is exact: k < 2¹³, and the parts have 8 and 11 bits.
+  /// For |x| ≤ kReach, the products of the quadrant k with the first two parts of π/2 are exact: k < 2¹³, and the parts
+  /// have 8 and 11 bits.
   static constexpr float kReach = 8192.0F;
 
   static void evaluate(float x, float& sine, float& cosine) noexcept {

@@ -32,7 +32,7 @@ struct Eigen::NumTraits<std::experimental::simd<T, Abi>> : Eigen::GenericNumTrai
   // NOLINTEND(readability-identifier-naming)
 };
 
-/// Operations between a number and lanes, for example their product.
+/// Operations between a number and lanes, for example a product.
 template <typename T, typename Abi, typename Operation>
 struct Eigen::ScalarBinaryOpTraits<T, std::experimental::simd<T, Abi>, Operation> {
   using ReturnType = std::experimental::simd<T, Abi>;

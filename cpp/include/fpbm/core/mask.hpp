@@ -5,9 +5,10 @@
 #include <type_traits>
 #include <utility>
 
-/// Masks, the results of comparisons: a bool, or one bool for each lane, which cannot be the condition of an `if`.
+/// A mask is the result of a comparison: a bool, or one bool for each lane. A mask of lanes cannot be the condition of
+/// an `if`.
 ///
-/// Code for any Scalar uses all_of(mask), or where(mask, x) = y as std::experimental::simd does.
+/// Code for any Scalar therefore uses all_of(mask), or where(mask, x) = y as in std::experimental::simd.
 namespace fpbm {
 
 template <typename Scalar>
@@ -37,7 +38,7 @@ using Number = typename NumberOf<Scalar>::type;
   return !truth;
 }
 
-/// Sets the lanes of value whose mask is false to NaN. Has no effect on a single number, whose failure is a Status.
+/// Sets the lanes of value whose mask is false to NaN. Has no effect on a single number: a Status reports its failure.
 template <typename Masks, typename Scalar>
 void set_nan_unless([[maybe_unused]] const Masks& truth, [[maybe_unused]] Scalar& value) noexcept {
   if constexpr (kInLanes<Scalar>) {

@@ -83,7 +83,7 @@ template <typename Scalar>
 /// Unit quaternion (w, v) of a rotation vector r [rad], w = cos(|r|/2).
 template <typename Scalar>
 [[nodiscard]] Vector<4, Scalar> quaternion(const Vector<3, Scalar>& r) noexcept {
-  // With the half angle, both factors are accurate near |r| = 0, where sin(a)/a is 1 up to round-off.
+  // With the half angle a, cos(a) and sin(a)/a are accurate near |r| = 0, where sin(a)/a is 1 up to round-off.
   const Scalar half = norm(r) / Scalar(2);
   const SinCos<Scalar> angle = sincos(half);
   const Scalar sinc = half > Scalar(0) ? angle.sin / half : Scalar(1);
@@ -158,8 +158,7 @@ template <typename Scalar>
   return rotation(quaternion(r));
 }
 
-/// Rotation near a matrix that deviates from a rotation by small errors only: the rotation of its normalised
-/// quaternion.
+/// Rotation of the normalised quaternion of R. R must deviate from a rotation by small errors only.
 template <typename Scalar>
 [[nodiscard]] Matrix<3, 3, Scalar> orthonormal(const Matrix<3, 3, Scalar>& R) noexcept {
   const Vector<4, Scalar> q = quaternion(R);

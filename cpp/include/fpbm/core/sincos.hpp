@@ -12,18 +12,19 @@
 
 namespace fpbm {
 
-/// sin and cos of one angle |x| ≤ kReach [rad], with an error of up to 2e-16. Without branches, so that a loop of calls
+/// sin and cos of one angle |x| ≤ kReach [rad], with an error of up to 2e-16. Has no branches, so that a loop of calls
 /// vectorises.
 ///
 /// Cody-Waite reduction by multiples of π/2 in two parts, then minimax polynomials on |r| ≤ π/4 (Remez; relative error
 /// below 2⁻⁵⁷): W. J. Cody, W. Waite, Software Manual for the Elementary Functions, 1980.
 struct ReducedSinCos {
-  /// Up to here, k times the first part of π/2 is exact: k < 2¹⁹, and the part has 31 bits.
+  /// For |x| ≤ kReach, the product of the quadrant k with the first part of π/2 is exact: k < 2¹⁹, and the part has 31
+  /// bits.
   static constexpr double kReach = 5e5;
 
   static void evaluate(double x, double& sine, double& cosine) noexcept {
 #if defined(__clang__) && __clang_major__ >= 12
-#pragma clang fp reassociate(off)  // Otherwise, k is not an integer with -fassociative-math, which clang hides.
+#pragma clang fp reassociate(off)  // With -fassociative-math, for which clang has no macro, k would not be an integer.
 #endif
     constexpr double kRound = 6755399441055744.0;  // 1.5 · 2⁵²: the low bits of the sum are the nearest integer.
     const double shifted = x * kPerQuadrant + kRound;
@@ -121,8 +122,8 @@ struct SinCos {
   Scalar cos;
 };
 
-/// sin and cos of one angle [rad]. double and float beyond kReach, and other Scalars, use their own sin and cos. A lane
-/// beyond kReach is NaN.
+/// sin and cos of one angle [rad]. If |angle| > kReach, double and float use std::sin and std::cos, and a lane becomes
+/// NaN. Other Scalars use the sin and cos of their type.
 template <typename Scalar>
 [[nodiscard]] SinCos<Scalar> sincos(Scalar angle) noexcept {
   using std::cos;
@@ -147,7 +148,8 @@ template <typename Scalar>
   return {sin(angle), cos(angle)};
 }
 
-/// Vector of N angles, with one more entry if N doubles are an odd number: two sines are computed in parallel.
+/// Vector of N angles. For doubles, an odd N is rounded up to an even number, because two sines are computed in
+/// parallel.
 template <int N, typename Scalar>
 using Angles = Vector<(N != Eigen::Dynamic && std::is_same_v<Scalar, double>) ? N + N % 2 : N, Scalar>;
 

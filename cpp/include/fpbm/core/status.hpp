@@ -7,7 +7,7 @@ namespace fpbm {
 enum class Status : unsigned char {
   kOk = 0,
   kCoarse,      ///< The step is too long: the step length, and not the scheme, causes a significant tip error.
-  kDamped,      ///< Near a singular posture: motion in the task directions that are lost there is damped.
+  kDamped,      ///< Near a singular posture: motion in the lost task directions is damped.
   kSlowed,      ///< Joint limits reduce the task scale, or a lower level has stopped (Tick::scales).
   kBlocked,     ///< Clearances, or bounds of tasks, reduce the task scale.
   kRecovering,  ///< No progress toward the target: the arm moves to a posture from which it can reach the target.

@@ -24,7 +24,7 @@ class ParameterError : public std::invalid_argument {
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   /// Index of the wrong entry, or -1 if the argument as a whole is wrong.
   [[nodiscard]] int index() const noexcept { return index_; }
-  /// Rejected value: a number or a number of entries, or NaN if the argument is not a number.
+  /// Rejected value or rejected number of entries. NaN if the argument is not a number.
   [[nodiscard]] double value() const noexcept { return value_; }
 
  private:
@@ -37,7 +37,7 @@ class ParameterError : public std::invalid_argument {
 
 /// Checks of constructor arguments. A failed check throws a ParameterError, whose message has the name of the argument,
 /// the index and the value. Without exceptions, a failed check prints this message and aborts the program. With
-/// EIGEN_NO_IO in addition, it aborts without a message.
+/// EIGEN_NO_IO in addition, the program aborts without a message.
 namespace fpbm::validation {
 
 /// Whether error messages can be reported: by an exception or on a stream. Otherwise, no message is built, since
