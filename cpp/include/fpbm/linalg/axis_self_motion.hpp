@@ -13,7 +13,7 @@ namespace fpbm {
 ///   K = A_T⁻¹ (2 × 2),   X = K A_R (2 × 4),   S = B_R − B_T X (3 × 4)
 ///   J y = b:   S y_R = b_v − B_T K b_w,   y_T = K b_w − X y_R;      J v = 0:   S ṽ = 0,   v = (−X ṽ, ṽ).
 ///
-/// The rows may also have any other meaning and unit.
+/// The elimination is also valid for rows with any other meaning and unit.
 template <typename Scalar>
 class AxisSelfMotion {
  public:
@@ -139,7 +139,7 @@ class AxisSelfMotion {
       {3, 5, 0, 1, 2, 4}, {2, 3, 0, 1, 4, 5}, {1, 3, 0, 2, 4, 5}, {0, 3, 1, 2, 4, 5}, {2, 5, 0, 1, 3, 4},
       {1, 5, 0, 2, 3, 4}, {0, 5, 1, 2, 3, 4}, {1, 2, 0, 3, 4, 5}, {0, 2, 1, 3, 4, 5}, {0, 1, 2, 3, 4, 5}};
   /// A pair is a hand if det² A_T is more than 1/kSpans of det AAᵀ, the sum of det² of all 15 pairs. At least one pair
-  /// has 1/15 of the sum (docs/equations.md, Degree of redundancy 1). 20 leaves a margin for round-off.
+  /// has 1/15 of the sum (docs/equations.md, Degree of redundancy 1). The value 20 leaves a margin for round-off.
   static constexpr auto kSpans = 20.0F;
 
   /// Entry i of K b_w: motion of joint i of the hand that produces the angular rows b_w.

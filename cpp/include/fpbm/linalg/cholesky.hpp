@@ -55,7 +55,7 @@ class Cholesky {
   /// Sets all solutions of a lane to NaN if the mask of the lane is false.
   void set_nan_unless(const Mask<Scalar>& truth) noexcept { fpbm::set_nan_unless(truth, reciprocal_[0]); }
 
-  /// Row whose pivot factor() rejected. The rows before this row are positive definite.
+  /// Row whose pivot factor() rejected. The leading block of A above this row is positive definite.
   [[nodiscard]] Eigen::Index lost_pivot() const noexcept { return lost_pivot_; }
 
   /// Solution x of A x = b.

@@ -15,9 +15,9 @@ namespace fpbm {
 /// Eigenvalues of a small symmetric matrix A below a bound, unordered, and their orthonormal eigenvectors.
 ///
 /// Householder reflections make A tridiagonal (Golub and Van Loan, Matrix Computations, 8.3). A Sturm sequence counts
-/// the eigenvalues below the bound. QL steps isolate one eigenvalue after another until this number is found. The first
-/// step has the shift 0, which favours the eigenvalue nearest to zero; the other steps have Wilkinson's shift. Each
-/// eigenvalue needs at most 30 steps, usually three. Accurate to round-off in ‖A‖.
+/// the eigenvalues below the bound. QL steps isolate one eigenvalue after another until all eigenvalues below the bound
+/// are found. The first step has the shift 0, which favours the eigenvalue nearest to zero; the other steps have
+/// Wilkinson's shift. Each eigenvalue needs at most 30 steps, usually three. Accurate to round-off in ‖A‖.
 template <int M, typename Scalar = double>
 class EigenpairsBelow {
  public:
@@ -74,8 +74,8 @@ class EigenpairsBelow {
   }
 
  private:
-  /// Larger than 100 √(min/ε)/ε of the Scalar, which is 4e-129 and 3e-7. If the largest entry is above this value, the
-  /// squares of round-off errors keep all digits.
+  /// Larger than 100 √(min/ε)/ε with the smallest normal number min: 4e-129 for double, 3e-7 for float. If the largest
+  /// entry is above this value, the squares of round-off errors keep all digits.
   static constexpr Scalar kLeast = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-128) : Scalar(1e-6);
 
   /// T ← HᵀTH makes T tridiagonal, where H is a product of reflections I − share v vᵀ. values: the diagonal; beside(i):

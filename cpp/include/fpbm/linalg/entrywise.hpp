@@ -6,8 +6,8 @@ namespace fpbm {
 
 /// Matrix with the entries f(i), of the same size as `size`. i counts the entries along the columns.
 ///
-/// For entrywise sums and products. An Eigen expression has the same entries, but its own type, for which a compiler
-/// instantiates about thirty classes and functions.
+/// For entrywise sums and products. For the type of an equal Eigen expression, a compiler would instantiate about
+/// thirty classes and functions.
 /// Result: type of an entry.
 template <typename Result, int Rows, int Cols, typename Scalar, typename F>
 [[nodiscard, gnu::always_inline]] inline Matrix<Rows, Cols, Result> entrywise_as(const Matrix<Rows, Cols, Scalar>& size,

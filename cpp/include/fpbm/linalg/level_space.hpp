@@ -33,8 +33,8 @@ class LevelSpace {
   [[nodiscard]] Eigen::Index size() const noexcept { return Q_.size(); }
   [[nodiscard]] Eigen::Index rank() const noexcept { return Q_.count(); }
 
-  /// Adds the level A. Returns y = Z (A Z)⁺ r with the null-space basis Z of the higher levels: of all y that do not
-  /// change the higher levels and minimise |A y − r|, the y of least norm.
+  /// Adds the level A. Returns y = Z (A Z)⁺ r with the null-space basis Z of the higher levels. y minimises |A y − r|
+  /// without a change of the higher levels, and has the least norm of all minimisers.
   ///
   /// A row counts as linearly dependent if its projection on this null space is nearly zero (Remainders).
   template <int M>
@@ -46,9 +46,10 @@ class LevelSpace {
   }
 
   /// Adds the level A. With A Z = L Qᵀ, where L is lower triangular (trapezoidal if rows are dependent) and QᵀQ = I,
-  /// calls solver(L, r, rank of A Z). If the solver replaces r by w and returns true, returns y = Z Q w; otherwise the
-  /// y of add(A, r). The rows of L and r are in the order of their pivots. Columns of L beyond the rank of A Z are
-  /// zero. If A is diagonal, solver.loses(σ) returns whether the solver damps a singular value σ [unit of A].
+  /// calls solver(L, r, rank of A Z). If the solver replaces r by w and returns true, the result is y = Z Q w.
+  /// Otherwise, the result is the y of add(A, r). The rows of L and r are in the order of their pivots. Columns of L
+  /// beyond the rank of A Z are zero. If A is diagonal, solver.loses(σ) returns whether the solver damps a singular
+  /// value σ [unit of A].
   template <int M, typename Solver>
   [[nodiscard]] Column add(const Matrix<M, N, Scalar>& A, const Vector<M, Scalar>& r, Solver& solver) noexcept {
     if constexpr (M == N || M == Eigen::Dynamic) {
@@ -80,7 +81,7 @@ class LevelSpace {
     return y;
   }
 
-  /// Adds the level A, and computes no solution.
+  /// Adds the level A without computing a solution.
   template <int M>
   void add(const Matrix<M, N, Scalar>& A) noexcept {
     if constexpr (M == N || M == Eigen::Dynamic) {
@@ -114,8 +115,8 @@ class LevelSpace {
   }
 
  private:
-  /// Adds the level A = D, of which no direction is lost: the singular values of D Z are at least the smallest
-  /// magnitude of an entry of D.
+  /// Adds the level A = D. No direction of D is lost: the singular values of D Z are at least the smallest magnitude of
+  /// an entry of D.
   ///
   ///   y = Z (ZᵀD²Z)⁻¹ ZᵀD r,   which is Z Zᵀ r/c if D = c I.
   [[nodiscard]] Column add_diagonal(const DiagonalLevel<N, Scalar>& A, const Column& r) noexcept {

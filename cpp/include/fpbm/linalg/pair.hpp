@@ -55,8 +55,8 @@ class Pair {
       return {from[0], from[1]};
     }
   }
-  /// Stores two adjacent entries in one operation. If they were stored separately, a later load of both would stall the
-  /// processor.
+  /// Stores two adjacent entries in one operation. After two separate stores, a later load of both entries would stall
+  /// the processor.
   void store(Scalar* to) const noexcept {
     if constexpr (kIsVector) {
       std::memcpy(to, &both_, sizeof both_);
@@ -131,7 +131,7 @@ template <int N, typename Scalar>
 [[nodiscard]] Pair<Scalar> two_of(const Vector<N, Scalar>& vector, Eigen::Index i) noexcept {
   return i + 1 < vector.size() ? Pair<Scalar>::load(vector.data() + i) : Pair<Scalar>(vector.coeff(i), Scalar(0));
 }
-/// Sets entries i and i + 1, or entry i only if entry i + 1 does not exist.
+/// Sets entries i and i + 1. If entry i + 1 does not exist, sets entry i.
 template <int N, typename Scalar>
 void set_two_of(Vector<N, Scalar>& vector, Eigen::Index i, const Pair<Scalar>& two) noexcept {
   if (i + 1 < vector.size()) {
@@ -176,8 +176,8 @@ template <int Rows, int Cols, typename Scalar>
   return entrywise_as<Scalar>(a, [&](Eigen::Index i) { return a.coeff(i).second(); });
 }
 
-/// a plus the first entry of each pair. The sums are stored in pairs, since a later load of two entries stalls if they
-/// were stored separately.
+/// a plus the first entry of each pair. The sums are stored in pairs, since a later load of two entries would stall
+/// after separate stores.
 template <int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> plus_first(Vector<N, Scalar> a, const Vector<N, Pair<Scalar>>& pairs) noexcept {
   const Eigen::Index n = a.size();

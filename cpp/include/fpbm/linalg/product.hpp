@@ -17,8 +17,8 @@ namespace fpbm {
 template <typename Scalar>
 inline constexpr bool kRowsInPairs = std::is_same_v<Scalar, double>;
 
-/// Vector whose rows f computes. f is called for one row, or for a pair of rows (kRowsInPairs). Its argument is a
-/// function rows(column), which reads these rows of a column in memory.
+/// Vector with the rows that f returns. f is called for one row, or for a pair of rows (kRowsInPairs). The argument of
+/// f is a function rows(column), which reads these rows of a column in memory.
 template <int M, typename Scalar, typename F>
 [[nodiscard, gnu::always_inline]] inline Vector<M, Scalar> by_rows(const F& f) noexcept {
   Vector<M, Scalar> result;

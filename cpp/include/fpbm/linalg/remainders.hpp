@@ -63,7 +63,7 @@ class Remainders {
   static constexpr Scalar kCancelled = Scalar(1e-3);
 
   Vector<M, Scalar> square_;
-  Vector<M, Scalar> computed_;  ///< Value of square_ when it was last computed from the entries.
+  Vector<M, Scalar> computed_;  ///< Last value of square_ that was computed from the entries.
   Vector<M, Scalar> inverse_least_;
 };
 

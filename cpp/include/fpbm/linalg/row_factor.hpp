@@ -17,10 +17,10 @@ namespace fpbm {
 /// degrees of redundancy). L is lower triangular with ones on its diagonal. The columns q_i of Q are orthogonal, with
 /// the squared lengths D: AAᵀ = L D Lᵀ.
 ///
-/// L and Q are the factors of a matrix that equals A up to round-off, except that the error of Q is the round-off times
-/// the condition number of A (Björck, "Solving linear least squares problems by Gram-Schmidt orthogonalization", 1967).
-/// The condition number of A therefore enters the solutions once, and not squared as with a factorisation of AAᵀ. Needs
-/// M divisions and no square root. With Value = Pair<Scalar>, factorises two matrices in parallel.
+/// L is the exact factor of a matrix that equals A up to round-off. The error of Q is the round-off times the condition
+/// number of A (Björck, "Solving linear least squares problems by Gram-Schmidt orthogonalization", 1967). The condition
+/// number of A therefore enters the solutions once, and not squared as with a factorisation of AAᵀ. Needs M divisions
+/// and no square root. With Value = Pair<Scalar>, factorises two matrices in parallel.
 template <int M, int N, typename Value>
 class RowFactor {
  public:
@@ -138,7 +138,7 @@ class RowFactor {
   template <typename Count>
   [[gnu::always_inline]] static void subtract(Count n, Value* a, const Value& s, const Value* b) noexcept {
     if constexpr (kLong) {
-      if (s != Value(Scalar(0))) subtract_multiple(a, s, b, N);  // Zero for rows of different arms.
+      if (s != Value(Scalar(0))) subtract_multiple(a, s, b, N);  // s is zero for rows of different arms.
     } else {
       each(kFirst, n, [&](Eigen::Index k) { a[k] -= s * b[k]; });
     }
@@ -153,8 +153,8 @@ class RowFactor {
     return Status::kSingular;
   }
 
-  /// Smallest squared length of a column of Q, relative to the mean squared length of the rows of A, that counts as
-  /// more than round-off error, as in the Cholesky factorisation of AAᵀ. 6e-4 ε to 64 ε pass `RowFactors*`; with 640 ε,
+  /// Smallest squared length of a column of Q, relative to the mean squared length of the rows of A. Shorter columns
+  /// count as round-off error, as in the Cholesky factorisation of AAᵀ. 6e-4 ε to 64 ε pass `RowFactors*`; with 640 ε,
   /// regular rows in float are rejected.
   static constexpr auto kPivotTolerance = 64 * std::numeric_limits<Number<Scalar>>::epsilon();
   static constexpr Constant<0> kFirst{};

@@ -8,13 +8,13 @@
 
 namespace fpbm {
 
-/// Factorisation of the task Jacobian J (M × N) of an arm with one self-motion, N = M + 1, without JJᵀ. It gives the
+/// Factorisation of the task Jacobian J (M × N) of an arm with one self-motion, N = M + 1, without JJᵀ. Gives the
 /// self-motion v with J v = 0, and a solution y of J y = b for any b (docs/equations.md, Degree of redundancy 1).
 ///
 /// The condition number of J enters the round-off error once, and not squared. All specialisations have the same
 /// functions:
-///   factor(J, kind, share)    false if the factorisation number kind < kKinds is not accurate, or if |v|² is not more
-///                             than share times its largest possible value
+///   factor(J, kind, share)    false if the factorisation `kind`, 0 to kKinds − 1, is not accurate, or if |v|² is not
+///                             more than share times the largest possible |v|²
 ///   null()                    v
 ///   solve(b)                  y; b may be a vector of pairs
 ///   along(t, g)               μᵀt, where Jᵀμ = g

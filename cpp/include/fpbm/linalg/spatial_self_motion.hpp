@@ -140,8 +140,8 @@ class SpatialSelfMotion {
                                              {3, 4, 5, 0, 1, 2, 6},
                                              {1, 2, 3, 0, 4, 5, 6},
                                              {0, 1, 2, 3, 4, 5, 6}};
-  /// Joints are a hand if |det A_T| is larger than this value (docs/equations.md, Degree of redundancy 1). Of
-  /// 10,000 random postures of each preset with seven joints, at most one has no hand, and up to 93 with 0.6. With
+  /// Joints are a hand if |det A_T| is larger than this value (docs/equations.md, Degree of redundancy 1). Of 10,000
+  /// random postures of each preset with seven joints, at most one has no hand. With 0.6, up to 93 have no hand. With
   /// 0.03, the round-off error of v is up to six times larger. `SelfMotions*` passes with 0.03 to 0.6.
   static constexpr auto kSpans = 0.3F;
 

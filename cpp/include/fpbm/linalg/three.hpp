@@ -4,8 +4,8 @@
 
 namespace fpbm {
 
-/// Vector in space as three separate entries, which may be pairs. A compiler keeps the entries in registers, whereas it
-/// stores a matrix in memory.
+/// Vector in space as three separate entries, which may be pairs. A compiler keeps the entries in registers, but stores
+/// a matrix in memory.
 template <typename Value>
 struct Three {
   Value x;
