@@ -152,7 +152,7 @@ def link_frames(joints: Sequence[TreeJoint], q: Array) -> Array:
 
 
 def capsules_apart(first: Sequence[Fit], second: Sequence[Fit], poses: Array) -> Array:
-    """Distances (count,) of two links' capsules for poses (count, 4, 4) of the second link relative to the first link."""
+    """Distances (count,) of two links' capsules for poses (count, 4, 4) of the second link relative to the first."""
     found = np.full(len(poses), np.inf)
     for one, two in product(first, second):
         a, b = (poses[:, :3, :3] @ end + poses[:, :3, 3] for end in (two.a, two.b))
