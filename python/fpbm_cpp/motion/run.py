@@ -168,7 +168,7 @@ class Run:
 
     @property
     def paths(self) -> dict[str, Path]:
-        """The paths by task name; the first is that of the task of x, x_ref and error."""
+        """The paths by task name; the first path belongs to the task of x, x_ref and error."""
         given = self.path if isinstance(self.path, Mapping) else {self.task: self.path}
         return {self.task: given[self.task], **given}
 
@@ -298,12 +298,12 @@ class Run:
     def to_rosbag(
         self, directory: str | os.PathLike[str], *, frame: str = "base_link", trajectory: bool = False
     ) -> None:
-        """Write a ROS 2 bag, completely or not at all, with the run's times as stamps. Needs the extra 'ros', not ROS.
+        """Write a ROS 2 bag, completely or not at all, with the run's times as stamps.
 
-        Topics are /joint_states, /tip and /tip_reference (JointState, PoseStamped), in the base frame with the name
-        frame; with trajectory, also /joint_trajectory with one message. If the task leaves orientation free, the
-        orientation of /tip is that of the arm, and of /tip_reference the identity. Raises FileExistsError if the
-        directory exists.
+        Needs the extra 'ros', but no ROS installation. The topics are /joint_states, /tip and /tip_reference
+        (JointState, PoseStamped), in the base frame, named `frame`; with trajectory, also /joint_trajectory with one
+        message. If the task leaves the orientation free, /tip has the arm's orientation, and /tip_reference has the
+        identity. Raises FileExistsError if the directory exists.
         """
         from ..io.rosbag import to_rosbag
 

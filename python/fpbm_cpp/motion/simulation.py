@@ -120,10 +120,10 @@ def track(
     """Move an arm along a path under a scheme, within its joints' limits and through singular postures.
 
     The motion is that of a Tracker: every joint keeps its bounds, the motion is damped near singular postures, and it
-    never stops early. Sample k has the state and the tip's error at t_k, and of the tick that starts at t_k the mean
-    acceleration, the task scale, and the joints on a bound. The status is the worst of all ticks: OK, DAMPED, SLOWED,
-    BLOCKED or STALLED; without damping it may be SINGULAR, if the arm brakes at a singular posture. Raises ValueError
-    as simulate() does, and if a limit is missing, or if the start violates a limit or the clearance.
+    never stops early. Sample k has the state and the tip's error at t_k. The mean acceleration, the task scale and the
+    joints on a bound are those of the tick that starts at t_k. The status is the worst of all ticks: OK, DAMPED,
+    SLOWED, BLOCKED or STALLED; without damping, the status may be SINGULAR, if the arm brakes at a singular posture.
+    Raises ValueError as simulate() does, and if a limit is missing, or if the start violates a limit or the clearance.
 
     Parameters
     ----------
@@ -207,7 +207,7 @@ def motion_options(arm: Arm | Robot, dt: float, hold: float, qd0: ArrayLike | No
 def make_run(
     outcome: Any, q0: ArrayLike, arm: Arm | Robot, path: Paths, scheme: Scheme, task: str, options: dict[str, Any]
 ) -> Run:
-    """A run from the result of the compiled part: status, time, number of samples, and arrays, filled up to them."""
+    """A run from the compiled part's result: status, time, number of samples, and arrays of at least this length."""
     code, time, samples, given = outcome
     arrays = {name: array if samples == len(array) else array[:samples].copy() for name, array in given.items()}
     if scheme.level == "velocity" and samples > 1 and not {"scale", "scales"} & arrays.keys():

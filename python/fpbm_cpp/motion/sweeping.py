@@ -29,7 +29,7 @@ Progress: TypeAlias = bool | Callable[[int, int], object] | None
 # do not depend on the number of workers.
 GROUP, CHUNKS, SAMPLES = 8, 64, 200_000
 
-# By number in the compiled part; the last, at -1, is for a motion that was not run.
+# Statuses by their number in the compiled part. The last entry, index -1, is for a motion that was not run.
 STATUSES = np.array([*Status, None], dtype=object)
 
 
@@ -37,8 +37,8 @@ STATUSES = np.array([*Status, None], dtype=object)
 class Sweep:
     """Key figures of every scheme from every start: arrays of shape (S, K), for S schemes and K starts.
 
-    A figure of joint vectors is the largest absolute entry; largest and peak are over time. Entries are nan if a motion
-    was not run or stopped before its first sample.
+    A figure of joint vectors is the largest absolute entry; "largest" and "peak" are maxima over time. Entries are nan
+    if a motion was not run or stopped before its first sample.
 
     Attributes
     ----------

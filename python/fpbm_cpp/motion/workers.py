@@ -16,7 +16,7 @@ POLL = 0.05  # Interval between checks for Ctrl-C [s].
 
 
 def run_chunk(chunk: tuple[Any, ...], stop: Stop | None) -> Result:
-    """Run a chunk in this process. Motions that stop interrupts are marked as not run."""
+    """Run a chunk in this process. Motions that `stop` interrupts are marked as not run."""
     arguments = (*chunk, stop or Stop())
     return sweep_chunk(*arguments)
 
@@ -81,7 +81,7 @@ def interrupted_at_checks() -> Iterator[Callable[[], None]]:
 
     def handle(number: int, frame: Any) -> None:
         nonlocal pressed
-        if os.getpid() != process:  # A worker that was forked since then.
+        if os.getpid() != process:  # In a worker that was forked after the call of signal().
             default_int_handler(number, frame)
         pressed = True
 
