@@ -31,7 +31,7 @@ __all__ += [
 ]
 __all__ += ["error_panel", "manipulability_panel", "null_space_panel", "orientation_error_panel", "tip_error_panel"]
 
-NEAR = 0.1  # Relative to the distance between the bounds of a joint.
+NEAR = 0.1  # Distance from which a bound is drawn, relative to the distance between both bounds.
 SNAPSHOTS = 11
 ROUND = {"solid_capstyle": "round"}
 LINK = {"lw": 1.8, "marker": "o", "ms": 3.8, "mew": 0.5, **ROUND}

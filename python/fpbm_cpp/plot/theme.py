@@ -7,7 +7,8 @@ from typing import Any, NamedTuple
 from matplotlib.colors import Colormap, LinearSegmentedColormap
 from matplotlib.figure import Figure
 
-# Okabe and Ito's colours, which colour-blind readers can distinguish. Lines on white do not use yellow, the last.
+# Okabe and Ito's colours, which colour-blind readers can distinguish. Lines on white do not use
+# the last colour, yellow.
 OKABE_ITO = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#000000", "#F0E442")
 DASHES = ("-", "--", ":", "-.")
 
@@ -32,7 +33,7 @@ class Theme(NamedTuple):
     fade: Colormap = LinearSegmentedColormap.from_list("fade", ["#C9DDF0", "#5BA3D0", "#08306B"])
 
     def styles(self) -> Iterator[tuple[str, str]]:
-        """Colour and dash of each line: 28 different pairs. Neighbours differ in both, also in grey print."""
+        """Colour and dash of each line: 28 different pairs. Successive lines differ in both, also in grey print."""
         return zip(cycle(self.lines), cycle(DASHES))
 
 
