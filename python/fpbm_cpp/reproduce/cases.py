@@ -31,8 +31,8 @@ class Case:
     table: str | None = None  # '1' or '2, 3'.
     row: str | None = None
     figure: int = 0
-    printed_qd: Sequence[float] | None = None  # At the end [rad/s].
-    printed_error: float | None = None  # The largest [m].
+    printed_qd: Sequence[float] | None = None  # Final joint velocities [rad/s].
+    printed_error: float | None = None  # Largest tip error [m].
     misprinted_joint: int = 0  # Joint with a misprinted velocity, 1 to n; 0: none.
 
     @property
@@ -52,7 +52,7 @@ class Paper:
     arm: PlanarArm
     q0: Array
     paths: Mapping[str, Path]
-    errata: Sequence[Mapping[str, Any]]  # A text, with its posture [deg] or radius of the circle [m].
+    errata: Sequence[Mapping[str, Any]]  # A text, and the printed posture [deg] or radius of the circle [m].
     cases: Sequence[Case]
 
     def simulate(self, path: str, scheme: Scheme, **options: Any) -> Run:
