@@ -91,8 +91,9 @@ class Tuning:
     """The best scheme, its sensitivity, and the trials, starting with the baseline; arm, path, q0, task are the motion.
 
     sensitivity is the change of the objective for a step down and a step up of one parameter of the best scheme: 0.05
-    for alpha, within [0, 1], and 10 % for all others. It is NaN if the parameter cannot step, infinite if the step is
-    infeasible, and empty after an interruption. objective is a name; the unit of a user's function is empty.
+    for alpha, within [0, 1], and 10 % for all others. The change is NaN if the parameter cannot step, and infinite if
+    the step is infeasible. After an interruption, sensitivity is empty. objective is a name; the unit of a user's
+    function is empty.
     """
 
     trials: Trials

@@ -18,13 +18,13 @@ from ..schemes import FPBM
 
 TUNABLE = ("alpha", "weights", "k1", "k2", "null_damping")
 
-# Not k1 and k2: they act on the tip error only, which is zero without disturbances.
+# k1 and k2 have no ranges: they act on the tip error only, which is zero without disturbances.
 SEARCH: dict[str, tuple[float, float]] = {"alpha": (0.0, 1.0), "weights": (0.1, 10.0), "null_damping": (0.01, 10.0)}
 
 Search = Generator[Array, Array, None]
 
-LANES, DEVIATION = 8, 0.3  # A generation fills the SIMD lanes, and its first deviation covers the cube.
-ALIKE = 1e-3  # A search restarts at another point if the relative difference of a generation's scores is less.
+LANES, DEVIATION = 8, 0.3  # A generation fills the SIMD lanes; the initial standard deviation covers the cube.
+ALIKE = 1e-3  # A search restarts at another point if the relative difference of a generation's scores is smaller.
 WEIGHTINGS, LEAST_WEIGHT, SUM = 4, 0.02, 0.01  # Weightings of two scores, least weight of a score, weight of the sum.
 
 

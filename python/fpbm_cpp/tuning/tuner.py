@@ -101,8 +101,8 @@ def tune(
     objective : str or callable
         'peak_velocity' [rad/s], 'peak_acceleration' [rad/s^2], 'final_velocity' [rad/s], each of the fastest joint;
         'energy', the integral of |qd|^2 [rad^2/s]; 'limit_distance', the largest distance of a joint from the middle of
-        its range, 0 in the middle and 1 on a bound; or a function of a Run that returns a number. The last three need
-        whole motions and are slower.
+        its range, 0 in the middle and 1 on a bound; or a function of a Run that returns a number. 'energy',
+        'limit_distance' and functions need whole motions and are slower.
     limits, **tracking
         Limits that every motion keeps, and with limits, the other options of track(). Default: no limits.
     search : mapping of str to (low, high), optional
