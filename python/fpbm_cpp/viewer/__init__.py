@@ -58,12 +58,12 @@ def view(
     """Show an arm on its path in the browser, with sliders for the scheme's parameters, until Ctrl-C.
 
     Prints the address of the page. A change of the scheme or of a parameter on the page repeats the motion, which is
-    that of simulate(). A motion that stops early is shown up to the stop. For a stack, the path is that of the task
-    that follows it, and the errors are those of all tasks. fpbm_cpp.viewer.Viewer does not wait.
+    that of simulate(). A motion that stops early is shown up to the stop. For a stack, one task follows the path, and
+    the page shows the errors of all tasks. The class fpbm_cpp.viewer.Viewer serves the page without waiting.
 
-    urdf is the URDF file of the arm. Its meshes are drawn, with all other joints of the file at zero. Without urdf, the
-    arm is drawn as rods and cylinders. Only this machine can open the page, unless host is '0.0.0.0' or an address on a
-    network. Port 0 selects a free port.
+    urdf is the URDF file of the arm. The meshes of the file are drawn, with joints that the arm does not have at zero.
+    Without urdf, the arm is drawn as rods and cylinders. Only this machine can open the page, unless host is '0.0.0.0'
+    or an address on a network. Port 0 selects a free port.
 
     Raises ValueError if an argument is out of range, or if the URDF file is of another arm; nothing is served then.
     Raises OSError if the port is in use or the URDF file cannot be read, ImportError if the extra 'view' is missing.
@@ -95,7 +95,7 @@ def servo(
 
     Prints the address of the page. A Tracker moves the arm with one tick per dt on the clock. All bounds of limits
     hold, also through singular postures and at the workspace boundary. On a machine that is too slow, the arm is
-    delayed. fpbm_cpp.viewer.Servo does not wait.
+    delayed. The class fpbm_cpp.viewer.Servo serves the page without waiting.
 
     The positions of the handle, 20 per second, are the input of targets, a TargetFilter with its own bounds. The
     default bounds depend on the length L of the arm: L per second, 5 L/s^2, 100 L/s^3 and 2 rad/s, 10 rad/s^2,

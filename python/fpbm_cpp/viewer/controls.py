@@ -29,7 +29,7 @@ NUMBERS = {
 
 
 def changed(base: Scheme, kind: type[Scheme], values: Mapping[str, Any]) -> Scheme:
-    """A scheme of a kind with these values, as far as the kind has them, otherwise the base's. Raises ValueError."""
+    """A scheme of a kind, with the parameters in `values` and otherwise those of `base`. Raises ValueError."""
     known = {**base._values(), **values}
     return kind(**{name: value for name, value in known.items() if name in parameters(kind)})
 
@@ -37,7 +37,7 @@ def changed(base: Scheme, kind: type[Scheme], values: Mapping[str, Any]) -> Sche
 class Controls:
     """Inputs for the scheme and its parameters. A change on the page calls `on_change`.
 
-    limits: limits that the page can switch on; limited: the first choice. Without limits, the page has no choice.
+    limits: limits that the page can switch on; limited: the first choice. Without limits, the page has no switch.
     gains: whether schemes have gains; with a stack, whose tasks have gains, the gains of the scheme are 0.
     """
 
@@ -103,7 +103,7 @@ class Controls:
         self._folder.visible = "weights" in known and not self._dense
 
     def _on_update(self, event: GuiEvent[Any]) -> None:
-        if event.client is None:  # Set by the program, not on the page.
+        if event.client is None:  # The program set the value, not the user.
             return
         if event.target is self._kind:
             self._show_sliders()
@@ -171,7 +171,7 @@ class Player:
         self._button.label, self._button.icon = "pause", Icon.PLAYER_PAUSE
 
     def pause(self) -> None:
-        with self._lock:  # After this, the clock does not change the time.
+        with self._lock:  # After this block, the clock does not change the time.
             self.playing = False
         self._button.label, self._button.icon = "play", Icon.PLAYER_PLAY
 

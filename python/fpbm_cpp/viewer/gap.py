@@ -10,13 +10,13 @@ from ..clearance import Clearance
 from ..obstacle import Cuboid, HalfSpace, Obstacle
 
 Project = Callable[[Array], Array]
-ROUNDS, PARTS = 7, 16  # The gap is convex along a capsule: each round narrows its minimum to two parts.
+ROUNDS, PARTS = 7, 16  # The gap is convex along a capsule: each round narrows the interval of the minimum to two parts.
 
 
 def nearest_points(clearance: Clearance, frames: Array, pair: tuple[str, str]) -> Array | None:
     """Nearest points on the surfaces of a pair of shapes, given by name, shape (2, 3); frames are those of the links.
 
-    None for the tip and a wall of its box, which are not shapes.
+    None for a pair of a tip and a wall of its bounds, because these are not shapes.
     """
     first, second = pair
     others: list[Obstacle] = [each for each in (*clearance.capsules, *clearance.obstacles) if each.name == second]

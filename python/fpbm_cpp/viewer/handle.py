@@ -39,7 +39,7 @@ class Handle:
         at_tip = task.frame == "tip" and task.offset is None
         look = {"axes_length": 0.4 * size, "axes_radius": 0.02 * size, "visible": not at_tip}  # The tip has axes.
         self._frame = scene.add_frame(f"/frames/{index}", **look)
-        # A separate node follows the frame: to set the position of a handle during a rotation would make it jump.
+        # A separate node follows the frame, because a handle whose position is set during a rotation jumps.
         self._carrier = scene.add_frame(f"/handles/{index}", show_axes=False)
         self._gizmo = scene.add_transform_controls(
             f"/handles/{index}/gizmo",

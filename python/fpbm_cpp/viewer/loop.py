@@ -25,7 +25,7 @@ from .strip import Strip
 from .targets import Targets
 
 MOST = 0.1  # Largest simulated time per call [s]; the remaining elapsed time is dropped.
-SAID = 0.25  # The status is the worst of this time [s], because a tick is too short to read.
+SAID = 0.25  # status is the worst status of the last SAID seconds, because a tick is too short to read.
 
 
 class ServoLoop:
@@ -222,6 +222,6 @@ class ServoLoop:
         levels = 1 if self.stack is None else len(self.stack.levels)
         self.strip: Strip = Strip(self.limits, self.dt, levels)
         self._time: float = 0.0
-        self._owed: float = 0.0  # Elapsed time on the clock, less than a tick.
+        self._owed: float = 0.0  # Elapsed time that no tick has simulated [s], less than a tick.
         self._last = self._clock()
         self._targets.restart(self._tracker.tip, self._last)

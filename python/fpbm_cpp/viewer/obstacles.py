@@ -62,7 +62,7 @@ class Obstacles:
                 way, velocity = goal, np.zeros(3)
                 del self._goals[name]
             else:
-                # With half of the acceleration, it stops in time in spite of a delay of one tick.
+                # With half of the acceleration, the obstacle stops in time in spite of a delay of one tick.
                 wanted = left * min(SPEED, math.sqrt(ACCELERATION * distance)) / max(distance, math.ulp(1.0))
                 turn = wanted - velocity
                 velocity = velocity + turn * min(1.0, change / max(float(np.linalg.norm(turn)), math.ulp(1.0)))

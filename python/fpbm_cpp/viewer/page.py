@@ -26,7 +26,7 @@ class Page(AbstractContextManager["Page"]):
         _require_free(host, port)
         with _quiet():
             self._server = viser.ViserServer(host, port, label="fpbm_cpp", verbose=False)
-        atexit.register(self.close)  # Before viser's own exit handler, which prints.
+        atexit.register(self.close)  # Runs before viser's own exit handler, which prints.
         shown = {"0.0.0.0": "localhost", "::": "localhost"}.get(host, f"[{host}]" if ":" in host else host)
         self.url = f"http://{shown}:{self._server.get_port()}"
         # The share button would publish the page through a third-party server.

@@ -216,7 +216,7 @@ def _place_camera(server: ViserServer, centre: Array, radius: float, planar: boo
     """View a planar arm from above, an arm in space from the side and above, with the whole ball in view."""
     server.scene.set_up_direction("+y" if planar else "+z")
     offset = np.array([0.0, 0.0, 1.0] if planar else [1.0, -1.3, 0.7])
-    room = 1.1 if planar else 0.95  # From the side, the ball about an arm is emptier.
+    room = 1.1 if planar else 0.95  # From the side, an arm fills less of the ball.
     offset *= room * radius / np.sin(FIELD / 2) / np.linalg.norm(offset)
     camera = server.initial_camera
     camera.fov = FIELD

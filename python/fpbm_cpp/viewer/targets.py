@@ -13,14 +13,14 @@ from .._types import Array
 from ..errors import not_one_of, wrong
 from ..tasks import TASKS, PostureTask, Stack, Task
 
-REPEAT = 0.1  # A handle without events is at rest: its target is repeated after this time [s].
+REPEAT = 0.1  # A handle without events is at rest: the target of this handle is repeated after this time [s].
 FILTERED = ("position", "pose")  # Tasks with a filter for targets; targets of other tasks are references.
 ROUND_OFF = 1e-8  # Tolerance of the entries of a rotation.
 TIP = "tip"  # Name of the only task without a stack.
 
 
 class Targets:
-    """Targets of the tasks of a stack, or of the tip's only task, which has no name for trackers and pages.
+    """Targets of the tasks of a stack, or of the tip's only task; trackers and pages do not name the only task.
 
     given: a filter, or for a stack, filters by name. length: length of the arm [m], for the bounds of default filters.
     Raises ParameterError if a filter is not for a position or pose of the stack.
@@ -60,7 +60,7 @@ class Targets:
             target.restart(starts[name], now)
 
     def repeat(self, now: float, stamp: float) -> None:
-        """Repeat targets without events, which tells a filter that they are at rest."""
+        """Repeat targets without events, so that the filters detect that these targets are at rest."""
         for target in self._targets.values():
             if now - target.heard >= REPEAT:
                 target.push(target.x, now, stamp)
