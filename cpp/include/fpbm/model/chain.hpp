@@ -15,7 +15,7 @@
 
 namespace fpbm {
 
-/// Joints from base to tip, from which an arm is built. If Length is known at compile time, there is no heap
+/// Joints from base to tip. An arm is built from a chain. If Length is known at compile time, there is no heap
 /// allocation.
 template <typename Scalar = double, int Length = Eigen::Dynamic>
 struct Chain {

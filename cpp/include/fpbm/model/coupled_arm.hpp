@@ -5,8 +5,8 @@
 
 namespace fpbm {
 
-/// Serial chain in which some joints follow others (gears, belts, URDF's mimic), as an arm. N joints have a drive, and
-/// any number of joints follow. Immutable.
+/// Arm with a serial chain in which some joints follow other joints (gears, belts, URDF's mimic). N joints have a
+/// drive, and any number of joints follow. Immutable.
 template <int N, typename Scalar_ = double>
 class CoupledArm {
  public:

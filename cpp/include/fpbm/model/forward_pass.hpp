@@ -14,7 +14,7 @@
 
 namespace fpbm {
 
-/// Constants of N joints, and the forward pass of a frame from joint to joint, which computes the axes of the joints.
+/// Constants of N joints. The forward pass moves a frame from joint to joint and computes the axes of the joints.
 ///
 /// The frame of joint i has the axis of the joint as z. The pass moves from one joint to the next by a translation and
 /// a tilt (DecomposedLink). The rotations about z before and after the tilt are offsets of the angles of the two
@@ -47,9 +47,9 @@ class ForwardPass {
     slides_ |= joint_bit(i);
   }
 
-  /// Sets the transform from the frame of joint i to the frame of joint i + 1, both at position zero. Returns its
-  /// parts: in the pass, the frame of joint i is rotated about z by `before` relative to the frame of the joint, and
-  /// the frame of joint i + 1 by `after`.
+  /// Sets the transform from the frame of joint i to the frame of joint i + 1, both at position zero. Returns the
+  /// decomposed transform. The pass adds the angle `before` to the angle of joint i, and `after` to the angle of joint
+  /// i + 1.
   DecomposedLink<Scalar> connect(Eigen::Index i, const Transform<Scalar>& step) {
     const DecomposedLink<Scalar> between(step);
     links_[static_cast<std::size_t>(i)] = LinkPassage<Scalar>(between.link);
@@ -59,8 +59,8 @@ class ForwardPass {
   }
 
   /// Computes the axes of the joints at (q, qd), starting from the frame of the first joint at position zero. For each
-  /// joint, calls along.enter(i, frame, w) before the motion of the joint, where `along` may set the frame and the
-  /// angular velocity, and along.leave(i, frame) after the motion. Returns the frame at the end of the last link.
+  /// joint, calls along.enter(i, frame, w) before the motion of the joint, and along.leave(i, frame) after the motion.
+  /// enter() may set the frame and the angular velocity w. Returns the frame at the end of the last link.
   template <bool kWithRate, bool kSlides, typename Along>
   [[gnu::always_inline]] Frame<Scalar> operator()(const Transform<Scalar>& first, const Vector<N, Scalar>& q,
                                                   [[maybe_unused]] const Vector<N, Scalar>& qd, Screws<N, Scalar>& axes,
@@ -102,7 +102,7 @@ class ForwardPass {
   }
 
   /// Number of joints, known at compile time if loops are unrolled. Loops over chains with prismatic joints are not
-  /// unrolled: they would take as long to compile as the loops over all other chains.
+  /// unrolled: unrolled loops would take as long to compile as the loops over all other chains.
   template <bool kSlides>
   [[nodiscard]] auto joints() const noexcept {
     return extent < kSlides ? Eigen::Dynamic : N > (dof_);

@@ -58,7 +58,7 @@ struct LinkPassage {
   }
 };
 
-/// Frame that moves along a chain, along the axes of the base frame.
+/// Frame that moves from joint to joint: origin and axes in the base frame.
 template <typename Scalar>
 struct Frame {
   using Split = SplitVector<Scalar>;

@@ -43,7 +43,7 @@ struct Mimic {
 template <typename Scalar = double, typename Name = std::string>
 struct Joint {
   JointType type = JointType::kRevolute;
-  Transform<Scalar> placement = {};  ///< Frame of the joint in the frame of the joint before, both at position zero.
+  Transform<Scalar> placement = {};  ///< Frame of the joint in the frame of the previous joint, both at position zero.
   Vector<3, Scalar> axis = {Scalar(0), Scalar(0), Scalar(1)};  ///< In the frame of the joint, of any length.
   JointBounds<Scalar> bounds = {};
   Name name = {};
@@ -91,7 +91,8 @@ struct JointLimits {
     return {lower(i), upper(i), velocity(i), acceleration(i), jerk(i), velocity_offset(i), deceleration(i)};
   }
 
-  /// These limits, without bounds for jerk, velocity_offset and deceleration if these vectors have no entries.
+  /// Copy of these limits. If jerk, velocity_offset or deceleration has no entries, the copy has no bounds of this
+  /// kind.
   [[nodiscard]] JointLimits complete() const {
     const JointLimits given{lower, upper, velocity, acceleration};
     JointLimits all = *this;

@@ -24,12 +24,12 @@ struct Kinematics {
 template <typename Space, int N>
 inline constexpr int kLimitedRows = N == Eigen::Dynamic ? Eigen::Dynamic : Space::kRows;
 
-/// Number of the last rows of J that the schemes multiply by a length [m]: the angular rows. If N is Eigen::Dynamic,
+/// Number of rows at the end of J that the schemes multiply by a length [m]: the angular rows. If N is Eigen::Dynamic,
 /// positions in space and poses in the plane share one instantiation, and the last row of a position is multiplied by
 /// 1.
 template <typename Space, int N>
 inline constexpr int kScaledRows = (N == Eigen::Dynamic && Space::kRows == 3) ? 1 : Space::kTurns;
-/// Length [m] by which the schemes multiply these rows.
+/// Length [m] by which the schemes multiply the last kScaledRows rows of J.
 template <typename Space, int N, typename Scalar>
 [[nodiscard]] Scalar scale_of_rows(const Kinematics<Space, N, Scalar>& kinematics) noexcept {
   return kScaledRows<Space, N> == Space::kTurns ? kinematics.length : Scalar(1);

@@ -154,11 +154,11 @@ class LinkTree {
   static constexpr std::size_t kLinks = static_cast<std::size_t>(kCapacity<Joints>) + 1;
   ForwardPass<Joints, Scalar> pass_;
   JointBits all_ = 0;
-  JointBits branches_ = 0;  ///< Bits of the joints, except the first, that the link of the joint before does not carry.
+  JointBits branches_ = 0;  ///< Bits of the joints that start a branch: the previous link does not carry them.
   std::array<int, kLinks> parents_{};         ///< Number of the link that carries each joint.
   std::array<JointBits, kLinks> moved_by_{};  ///< Bits of the joints that move each link.
   std::array<Transform<Scalar>, kLinks>
-      starts_;  ///< Frames of the first joint and of branches at zero, in the carrying placement.
+      starts_;  ///< Frames at zero of the first joint and of branches, in the placement of the parent.
   std::array<Transform<Scalar>, kLinks> ends_;  ///< Frame of each link, relative to the placement of its joint.
 };
 

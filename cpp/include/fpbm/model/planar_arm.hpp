@@ -14,8 +14,8 @@ namespace fpbm {
 
 /// Planar arm of N revolute joints: f(q) = Σᵢ lᵢ (cos θᵢ, sin θᵢ) with θᵢ = q₁ + … + qᵢ.
 ///
-/// Joint angles are relative to the previous link [rad], the first to the x axis of the base frame. Lengths are in
-/// metres. Immutable.
+/// Joint angles [rad] are relative to the previous link. The first angle is relative to the x axis of the base frame.
+/// Lengths are in metres. Immutable.
 /// With N = Eigen::Dynamic, the number of lengths is the number of joints, up to kMaxDof.
 template <int N, typename Scalar_ = double>
 class PlanarArm {

@@ -119,8 +119,8 @@ template <typename Bounds>
 /// Kinova Gen3 with a spherical wrist, 7 joints, to the frame of its interface module.
 ///
 /// Source: Kinova "Gen3 Ultra lightweight robot, User Guide" R07 of 2022, table 94, "7 DoF spherical Classical DH
-/// parameters", whose row of the base is alpha of the first joint here; tables 39 and 40 for the bounds. The guide
-/// rounds lengths to 0.1 mm and omits the offset at joint 6. The lengths here are from GEN3_URDF_V12 of Kinova's
+/// parameters", and tables 39 and 40 for the bounds. The base row of table 94 is alpha of the first joint here. The
+/// guide rounds lengths to 0.1 mm and omits the offset at joint 6. The lengths here are from GEN3_URDF_V12 of Kinova's
 /// kortex_description, which has all digits. Bounds on acceleration depend on the control mode. The bounds here are the
 /// hard limits of Kinova's ros_kortex, gen3_move_it_config/config/7dof/hard_joint_limits.yaml.
 [[nodiscard]] inline Chain<> gen3() {
@@ -149,8 +149,8 @@ template <typename Bounds>
 
 namespace arms {
 
-/// Arm of Universal Robots; all models have the same structure. a: of the two long links [m]. d: of joints 1, 4, 5 and
-/// 6 [m]. speeds: of the two shoulder joints and of the four other joints [deg/s].
+/// Arm of Universal Robots; all models have the same structure. a: lengths of the two long links [m]. d: offsets of
+/// joints 1, 4, 5 and 6 [m]. speeds: bounds of the two shoulder joints and of the four other joints [deg/s].
 [[nodiscard]] inline Chain<> universal_robot(const std::vector<double>& a, const std::vector<double>& d,
                                              const std::vector<double>& speeds) {
   Chain<> chain = classic_dh<double>({
@@ -177,8 +177,8 @@ namespace arms {
 /// which is base_link rotated by 180°).
 ///
 /// Sources: Universal Robots, "DH Parameters for calculations of kinematics and dynamics", and the user manual of the
-/// e-Series 5.8 for the bounds on position and velocity. For its planners, ROS halves the range of the elbow. Universal
-/// Robots publishes no accelerations, since the drives are limited by torque. 5 rad/s² is the conservative value of its
+/// e-Series 5.8 for the bounds on position and velocity. ROS halves the range of the elbow for planners. Universal
+/// Robots publishes no accelerations, since the drives are limited by torque. 5 rad/s² is the conservative value of the
 /// ROS driver, ur_moveit_config/config/joint_limits.yaml.
 [[nodiscard]] inline Chain<> ur5e() {
   return arms::universal_robot({-0.425, -0.3922}, {0.1625, 0.1333, 0.0997, 0.0996}, {180.0, 180.0});

@@ -13,11 +13,11 @@
 
 namespace fpbm {
 
-/// Tree of joints, of which N have a drive and the others follow a drive. Tasks refer to the links of the robot.
+/// Tree of joints. N joints have a drive, and the other joints follow a drive. Tasks refer to the links of the robot.
 /// Immutable.
 ///
-/// Link 0 is the base. Link i, counted from 1, is the link that joint i moves; its frame is the frame of the joint
-/// after the motion of the joint. kTip is the tip of a chain. Joints: number of joints, if it is not N.
+/// Link 0 is the base. Joint i, counted from 0, moves link i + 1. The frame of this link is the frame of the joint
+/// after the motion of the joint. kTip is the tip of a chain. Joints: number of joints, N by default.
 template <int N, typename Scalar_ = double, int Joints = N>
 class Robot {
  public:
@@ -81,7 +81,7 @@ class Robot {
     }
   }
 
-  /// Placements of all joints at q, for tasks at velocity level, whose J̇ does not change.
+  /// Placements of all joints at q, for tasks at velocity level, which need no J̇.
   void update(const Vector<N, Scalar>& q, State& state) const noexcept {
     update(q, filled<Vector<N, Scalar>>(dof()), state);
     state.moves = false;
@@ -102,8 +102,8 @@ class Robot {
   }
 
   /// Frame fixed to a link, relative to the placement of the joint of the link. offset: the frame relative to the frame
-  /// of the link. The result is constant: compute it once in the constructor of an object that calls frame() at every
-  /// tick.
+  /// of the link. The result is constant: an object that calls frame() at every tick computes the result once, in its
+  /// constructor.
   [[nodiscard]] Transform<Scalar> in_joint(int link, const Transform<Scalar>& offset) const noexcept {
     return (link == kTip ? tip_ : tree_.end(link)) * offset;
   }
@@ -133,7 +133,7 @@ class Robot {
   ///
   /// Column i of J is [l; a] = [z × (p − pᵢ); z] for a revolute joint, and [z; 0] for a prismatic joint. Column i of J̇
   /// is [wᵢ × l + a × uᵢ; wᵢ × a], where uᵢ = Σ_{j>i} q̇ⱼ lⱼ (docs/equations.md, Time derivative of J). The columns of
-  /// joints beyond the link are 0. J̇ is 0 if the state has no velocities.
+  /// joints that do not move the link are 0. J̇ is 0 if the state has no velocities.
   template <typename F>
   [[gnu::always_inline]] Vector3 columns(const State& state, int link, const Vector3& p, const F& f) const noexcept {
     if constexpr (Drives_::kMayFollow) {

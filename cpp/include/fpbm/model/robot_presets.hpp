@@ -8,7 +8,7 @@
 
 namespace fpbm::presets {
 
-/// Distance of the base of each of the two Pandas from the middle between them, along y [m]: a choice.
+/// Half of the distance between the bases of the two Pandas, along y [m]. The value is a choice.
 inline constexpr double kPandaOffset = 0.4;
 
 /// Two Pandas at a table, 0.8 m apart along y: "right" and "left", with the frames right_tip and left_tip.
@@ -63,9 +63,9 @@ inline void add(Tree<>& tree, const Row& row, int parent, const std::string& sid
 /// Upper body of a Unitree G1 (29 joints): waist and arms, 17 joints, with the frames left_wrist_yaw_link and
 /// right_wrist_yaw_link. The pelvis is the base. Its mass includes the legs, which are held straight.
 ///
-/// Source: g1_29dof_rev_1_0.urdf of Unitree's unitree_ros (BSD-3-Clause). Its velocities are the no-load velocities of
-/// the motors. Bounds on acceleration are not published: 20 rad/s² is a choice. Masses are rounded to 1 mg, and their
-/// centres to 1 µm.
+/// Source: g1_29dof_rev_1_0.urdf of Unitree's unitree_ros (BSD-3-Clause). The velocities in this file are the no-load
+/// velocities of the motors. Bounds on acceleration are not published: 20 rad/s² is a choice. Masses are rounded to
+/// 1 mg, and their centres to 1 µm.
 [[nodiscard]] inline Tree<> g1_upper_body() {
   using humanoids::Row;
   const Vector<3> x(1.0, 0.0, 0.0);
@@ -103,7 +103,7 @@ inline void add(Tree<>& tree, const Row& row, int parent, const std::string& sid
     }
     tree.frames.push_back({side + "wrist_yaw_link", link, {}});
   }
-  tree.joints[10].joint.placement.p(1) = -0.10021;  // Not symmetric in the file.
+  tree.joints[10].joint.placement.p(1) = -0.10021;  // The URDF file is not symmetric here.
   return tree;
 }
 

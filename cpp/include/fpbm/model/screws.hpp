@@ -45,7 +45,7 @@ class Screws {
               entrywise(a.linear, [&](Eigen::Index k) { return a.angular.coeff(k) - b.angular.coeff(k); })};
     }
 
-    /// Stores columns i and, if it exists, i + 1 of a matrix of six rows, or of three linear rows.
+    /// Stores column i, and column i + 1 if it exists, of a matrix of six rows, or of three linear rows.
     template <typename To>
     [[gnu::always_inline]] void store(To& to, Eigen::Index i) const noexcept {
       constexpr int M = To::RowsAtCompileTime;
@@ -102,7 +102,7 @@ class Screws {
     Two3 point;
     Two3 w;
 
-    /// The pair, in which only joints whose bits are set have an axis.
+    /// Copy of the pair, with zero axes for joints whose bits are not set.
     [[nodiscard]] JointPair only(JointBits bits) const noexcept {
       const Two mask(Scalar(bits & 1U), Scalar(bits >> 1 & 1U));
       return {entrywise(axis, [&](Eigen::Index k) { return mask * axis.coeff(k); }), point, w};

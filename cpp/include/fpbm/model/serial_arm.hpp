@@ -74,7 +74,7 @@ class SerialArm {
   [[nodiscard]] const JointLimits<N, Scalar>& limits() const noexcept { return limits_; }
 
   /// Characteristic length [m]: the sum of the distances from joint to joint and to the tip, plus the finite ranges of
-  /// prismatic joints. If the sum is zero, 1.
+  /// prismatic joints. If the sum is zero, the length is 1.
   [[nodiscard]] Scalar length() const noexcept { return length_; }
 
   /// Tip, J and Jd at (q, qd), for the task spaces Position<3> and Pose.
@@ -111,8 +111,8 @@ class SerialArm {
     static_assert(kWithOrientation || std::is_same_v<Space, Position<3>>,
                   "a serial arm has tasks Position<3> and Pose");
     using Axes = Screws<N, Scalar>;
-    // As members of one object, g++ keeps axes and tip in memory. A separate tip would occupy registers that the
-    // columns need, which costs 3 % of the instructions of the kinematics (make count).
+    // g++ keeps axes and tip in memory if they are members of one object. A separate tip would occupy registers that
+    // the columns need, and the kinematics would need 3 % more instructions (make count).
     struct Pass {
       Axes axes;
       typename Axes::Point tip{{}};

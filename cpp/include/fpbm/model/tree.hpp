@@ -33,8 +33,8 @@ struct NamedFrame {
   Transform<Scalar> offset = {};  ///< In the frame of the link.
 };
 
-/// Joints in an order in which each joint comes after the joint of the link that carries it. A Robot is built from a
-/// tree. If the numbers of joints and frames are known at compile time, there is no heap allocation.
+/// Joints of a robot, in order: the joint that moves a link comes before the joints that this link carries. A Robot is
+/// built from a tree. If the numbers of joints and frames are known at compile time, there is no heap allocation.
 template <typename Scalar = double, int Joints = Eigen::Dynamic, int Frames = Joints>
 struct Tree {
   std::array<TreeJoint<Scalar, std::string_view>, Joints> joints = {};
@@ -55,7 +55,7 @@ template <typename Scalar, int Joints, int Frames>
   return tree.joints[static_cast<std::size_t>(i)].joint;
 }
 
-/// Number of the link that carries joint i. In a chain, this is the link of the joint before.
+/// Number of the link that carries joint i. In a chain, this is the link of the previous joint.
 template <typename Scalar, int Joints, int Frames>
 [[nodiscard]] int parent_of(const Tree<Scalar, Joints, Frames>& tree, Eigen::Index i) noexcept {
   return tree.joints[static_cast<std::size_t>(i)].parent;
@@ -92,8 +92,8 @@ Eigen::Index require_tree(const Tree<Scalar, Joints, Frames>& tree) {
   return static_cast<Eigen::Index>(tree.joints.size());
 }
 
-/// Adds an arm to a tree, placed in the frame of a link. The names of its joints begin with the name of the arm, and
-/// its tip is the frame name_tip. Returns the number of its last link.
+/// Adds an arm to a tree. The arm is placed in the frame of a link. The joint names begin with the name of the arm, and
+/// the tip of the arm is the frame name_tip. Returns the number of the last link of the arm.
 template <typename Scalar>
 int add_arm(Tree<Scalar>& tree, const Chain<Scalar>& arm, const std::string& name, int link = 0,
             const Transform<Scalar>& placement = {}) {
