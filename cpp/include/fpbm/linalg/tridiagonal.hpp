@@ -8,8 +8,8 @@
 
 namespace fpbm {
 
-/// Symmetric tridiagonal matrix T. QL steps make T diagonal. values: the diagonal; beside(i): the entry between i and i
-/// + 1. The initial matrix is V T Vᵀ with the orthonormal vectors V (Golub and Van Loan, Matrix Computations, 8.3).
+/// Symmetric tridiagonal matrix T. QL steps make T diagonal. values: the diagonal; beside(i): the entry between i and
+/// i + 1. The initial matrix is V T Vᵀ with the orthonormal vectors V (Golub and Van Loan, Matrix Computations, 8.3).
 template <int M, typename Scalar>
 struct Tridiagonal {
   using Column = Vector<M, Scalar>;
