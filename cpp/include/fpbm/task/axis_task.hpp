@@ -15,8 +15,8 @@ namespace fpbm {
 ///
 ///   d/dt ω⊥ = (J q̈ + J̇ q̇)⊥ − (aᵀω)(ω × a),   ω = J q̇.
 ///
-/// The last term is necessary: without it, the rotation about a, which lower levels determine, would disturb the motion
-/// of a. columns, rates: angular rows of J and J̇. turning: ω × a.
+/// Lower levels determine the rotation about a. Without the last term, this rotation would disturb the motion of a.
+/// columns, rates: angular rows of J and J̇. turning: ω × a.
 template <typename Scalar>
 [[nodiscard, gnu::always_inline]] inline Vector<3, Pair<Scalar>> without_spin(
     const Vector<3, Pair<Scalar>>& columns, const Vector<3, Pair<Scalar>>& rates, const Vector<3, Scalar>& a,
@@ -31,8 +31,8 @@ template <typename Scalar>
 ///
 /// The error is the rotation vector of the smallest rotation from a to d. The rows are the components of the angular
 /// velocity along two unit vectors b₁, b₂ of the frame, which are perpendicular to a and to each other: S = [b₁ b₂]ᵀ.
-/// The angle θ between a and d obeys θ̇ + kθ = 0 at velocity level for all initial angles except θ = π, and θ̈ + k₁θ̇ +
-/// k₂θ = 0 at acceleration level from rest, for any rotation about a (without_spin()).
+/// At velocity level, the angle θ between a and d obeys θ̇ + kθ = 0 for all initial angles except θ = π. At
+/// acceleration level, θ obeys θ̈ + k₁θ̇ + k₂θ = 0 from rest, for any rotation about a (without_spin()).
 template <typename Scalar_ = double>
 class AxisTask {
  public:
@@ -82,7 +82,7 @@ class AxisTask {
 
  private:
   Matrix<3, 3, Scalar> to_axis_;  ///< Columns b₁, b₂ and a, in the frame.
-  LinkFrame<Scalar> axes_;        ///< Frame with these axes.
+  LinkFrame<Scalar> axes_;        ///< Frame with the axes b₁, b₂ and a.
 };
 
 }  // namespace fpbm

@@ -22,7 +22,7 @@ struct CenterOfMassTask {
   TaskGains<Scalar> gains;
   std::array<int, M> rows = PositionTask<M, Scalar>::first_rows();  ///< Coordinates 0 (x), 1 (y) and 2 (z), each once.
 
-  /// Throws std::invalid_argument if the robot has no mass, or if rows are wrong.
+  /// Throws std::invalid_argument if the robot has no mass, or if `rows` are not different numbers from 0 to 2.
   template <typename Robot>
   void bind(const Robot& robot) const {
     require_different("rows", rows, 3);

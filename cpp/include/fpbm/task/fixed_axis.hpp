@@ -9,14 +9,14 @@
 
 namespace fpbm {
 
-/// Rotation about a fixed axis, represented by its coordinate with the largest angle. The angles, velocities and
-/// accelerations of the other two coordinates are this coordinate times factors of magnitude ≤ 1. They therefore keep
-/// any bound that this coordinate keeps.
+/// Rotation about a fixed axis, represented by the coordinate of the rotation vector with the largest angle. The
+/// angles, velocities and accelerations of the other two coordinates are this coordinate times factors of
+/// magnitude ≤ 1. The other two coordinates therefore keep any bound that this coordinate keeps.
 template <typename Scalar>
 struct FixedAxis {
   Eigen::Index largest;      ///< Coordinate of the largest angle.
-  Vector<3, Scalar> angles;  ///< Remaining angles, relative to the largest.
-  Vector<3, Scalar> motion;  ///< Velocity and acceleration, relative to coordinate `largest`: `angles` up to round-off.
+  Vector<3, Scalar> angles;  ///< Ratios of the remaining angles to coordinate `largest`.
+  Vector<3, Scalar> motion;  ///< Ratios of velocity and acceleration to coordinate `largest`: `angles` up to round-off.
 };
 
 /// Fixed axis of a rotation whose angular velocity w [rad/s] and acceleration wd [rad/s²] are parallel to the remaining

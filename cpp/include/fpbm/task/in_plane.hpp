@@ -26,7 +26,7 @@ class InPlane {
     u_ = normalized(u);
     v_ = normalized(v);
     const Scalar cosine = u_(0) * v_(0) + u_(1) * v_(1) + u_(2) * v_(2);
-    // Directions with 6 decimals are perpendicular. The path then deviates by up to 1e-6 of its size.
+    // Perpendicular directions with 6 decimals are accepted. The path then deviates by up to 1e-6 of its size.
     if (!(cosine * cosine < Scalar(1e-12))) {
       validation::fail("u v / |u| |v|", cosine, "0: u and v must be perpendicular");
     }

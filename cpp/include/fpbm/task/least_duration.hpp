@@ -12,13 +12,13 @@
 
 namespace fpbm {
 
-/// Shortest duration to which a path of 1 s must be stretched so that the tip keeps its bounds. Velocities decrease
-/// with the duration, accelerations with its square.
+/// Shortest duration to which a path of 1 s must be stretched so that the tip keeps its bounds. Velocities are
+/// proportional to 1/duration, accelerations to 1/duration².
 ///
 /// The maximum of the required duration over the path (share()) is found by branch and bound. The sample in the middle
 /// of an interval, and bounds on the derivatives in the interval, give an upper bound on the required duration of the
 /// whole interval. Intervals are halved until this upper bound is at most kSlack times the largest sample. Therefore,
-/// no peak between samples is missed, however narrow.
+/// the search also finds narrow peaks between samples.
 template <typename Space, int M, typename Scalar>
 class LeastDuration {
   static constexpr bool kQuaternion = M > Space::kRows;
@@ -32,7 +32,8 @@ class LeastDuration {
   /// the tip. sample(t) gives the velocity xd and acceleration xdd of the tip.
   template <typename Sample>
   [[nodiscard]] Scalar of(const Sample& sample) const {
-    // For each piece of the spline. search() refines them, so that 16 to 256 pass WaypointsBounds.*.
+    // Samples of each piece of the spline. search() refines the intervals between samples: 16 to 256 pass
+    // WaypointsBounds.*.
     constexpr int kSamples = 64;
     const auto& times = spline_.times();
     Scalar longest(0);
@@ -68,7 +69,7 @@ class LeastDuration {
             at.xd.template tail<Space::kTurns>().norm(), at.xdd.template tail<Space::kTurns>().norm()};
   }
 
-  /// Required duration: the duration for which motions of 1 s with these peaks keep the bounds.
+  /// Required duration: a path of 1 s with these peaks keeps the bounds if it is stretched to this duration.
   [[nodiscard]] Scalar share(const TipBounds<Scalar>& peak) const {
     return std::max(std::max(peak.velocity / bounds_.velocity, peak.angular_velocity / bounds_.angular_velocity),
                     std::max(std::sqrt(peak.acceleration / bounds_.acceleration),
@@ -79,8 +80,8 @@ class LeastDuration {
   /// the slack.
   template <typename Sample>
   void search(const Sample& sample, std::size_t i, Scalar middle, Scalar half, int halvings, Scalar& longest) const {
-    // Below kSlack, otherwise an interval with a peak in between is halved to the end. Any value from 1 needs the same
-    // number of samples.
+    // Must be below kSlack: an interval with a peak between both values would be halved kHalvings times. Values from 1
+    // to just below kSlack need the same number of samples.
     constexpr Scalar kRaise = Scalar(1.004);
     const TipBounds<Scalar> here = peaks(sample(middle));
     if (share(here) > kRaise * longest) longest = share(here);
@@ -137,7 +138,7 @@ class LeastDuration {
       result.angular_velocity = here.angular_velocity + half * turns.most(2);
       result.angular_acceleration = here.angular_acceleration + half * turns.most(3);
     }
-    // Finite, even if |Q| may be zero: share() would divide infinity by an infinite bound.
+    // Infinity is replaced, since |Q| may be zero: share() would divide infinity by an infinite bound.
     if (!(result.angular_velocity <= kMost)) result.angular_velocity = kMost;
     if (!(result.angular_acceleration <= kMost)) result.angular_acceleration = kMost;
     return result;

@@ -34,7 +34,7 @@ template <typename Path>
   }
 }
 
-/// Follows a shape with a time law in T seconds, then stays at the end of the shape.
+/// Path along a shape with a time law, of T seconds. After T, the path stays at the end of the shape.
 ///
 /// With s(τ), τ = t/T, from the time law and d(s) from the shape:
 ///   x = d(s),  xd = d′ ṡ,  xdd = d″ ṡ² + d′ s̈,

@@ -28,9 +28,10 @@ struct PositionTask {
   LinkFrame<Scalar> frame;
   TaskGains<Scalar> gains;
   std::array<int, M> rows = first_rows();  ///< Coordinates 0 (x), 1 (y) and 2 (z), each once.
-  bool in_frame = false;                   ///< Along the axes of the frame; otherwise, of the base frame.
+  bool in_frame = false;  ///< Whether the rows are along the axes of the frame, instead of the base frame.
 
-  /// Throws std::invalid_argument if the frame does not exist in the robot, or if rows are wrong.
+  /// Throws std::invalid_argument if the frame does not exist in the robot, or if `rows` are not different numbers from
+  /// 0 to 2.
   template <typename Robot>
   void bind(const Robot& robot) {
     frame.bind(robot);

@@ -118,8 +118,9 @@ void require_relative_motion(const Robot& robot, const LinkFrame<Scalar>& frame,
   }
 }
 
-/// Task of a frame relative to another frame of the robot, which may move: a PositionTask, OrientationTask, PoseTask or
-/// AxisTask, whose point, reference and rows are in the axes of the reference frame instead of the base frame.
+/// Task of a frame relative to another frame of the robot, the reference frame, which may move. The task is a
+/// PositionTask, OrientationTask, PoseTask or AxisTask. The point, reference and rows of the task are in the reference
+/// frame instead of the base frame.
 template <typename Task>
 struct RelativeTask {
   using Scalar = typename Task::Scalar;

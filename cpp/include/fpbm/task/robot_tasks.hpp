@@ -50,7 +50,7 @@ class RobotTasks {
     evaluate(state, out);
   }
 
-  /// Points and rows of the tasks at q, for velocity level. J̇ does not change.
+  /// Points and rows of the tasks at q, for velocity level, which needs no J̇.
   void kinematics(const Vector<kDof, Scalar>& q, State& out) const noexcept {
     typename Robot_::State state;
     robot_.update(q, state);

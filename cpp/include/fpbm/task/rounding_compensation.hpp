@@ -7,9 +7,9 @@
 
 namespace fpbm {
 
-/// Rounding compensation of a point that is displaced tick by tick: the sum of the parts of the displacements that are
-/// lost when the point is rounded [m, rad], as in Kahan summation. Without compensation, a displacement per tick below
-/// the last bit of the point would have no effect.
+/// Rounding compensation of a point that is displaced tick by tick. Rounding of the point loses a part of each
+/// displacement. The compensation is the sum of the lost parts [m, rad], as in Kahan summation. Without compensation, a
+/// displacement per tick below the last bit of the point would have no effect.
 template <typename Space, typename Scalar>
 class RoundingCompensation {
  public:
@@ -28,7 +28,7 @@ class RoundingCompensation {
   }
 
   /// Adds the part of a displacement from `from` to `to` that was lost in rounding. The sum is limited to a few last
-  /// bits, since a point may also be set: 1 to 400 epsilon pass TargetTurn.*, 0 fails.
+  /// bits, since the point may also be set to a target: limits of 1 to 400 epsilon pass TargetTurn.*, 0 fails.
   void add(const Twist& displacement, const Point& to, const Point& from) noexcept {
     lost_ += displacement - Space::template difference<Scalar>(to, from);
     const Scalar most = Scalar(4) * std::numeric_limits<Scalar>::epsilon() * extent(to);

@@ -25,7 +25,8 @@ class Sequence {
 
   [[nodiscard]] Reference<Space, Scalar> sample(Scalar t, Scalar since) const noexcept {
     const Scalar T = first_.duration();
-    // A step of an integrator ends at a multiple of its length, which round-off may put just before or after T.
+    // A step of an integrator ends at a multiple of its length. Because of round-off, a step may end just before or
+    // after T.
     if (since < T * (Scalar(1) - kRounding)) return sample_within(first_, t < T ? t : T, since);
     const Scalar begun = t > T ? t - T : Scalar(0);
     Reference<Space, Scalar> reference = sample_within(second_, begun, since > T ? since - T : Scalar(0));
@@ -34,7 +35,7 @@ class Sequence {
   }
 
  private:
-  /// Relative. A multiple k h of the step h = T/k has a round-off error of at most ε.
+  /// Relative tolerance. A multiple k h of the step h = T/k has a round-off error of at most ε.
   static constexpr Scalar kRounding = 8 * std::numeric_limits<Scalar>::epsilon();
 
   First first_;

@@ -21,7 +21,7 @@ struct TaskState {
   using Scalar = typename Task::Scalar;
   TickFeedback<Scalar> feedback;
   Matrix<Task::kRows, Task::Space::kRows, Scalar> S;
-  Vector<Task::Space::kRows, Scalar> xd;  ///< If kWhole, only the first S.rows() entries.
+  Vector<Task::Space::kRows, Scalar> xd;  ///< If kWhole, only the first S.rows() entries are set.
 
   TaskState() noexcept {}  // NOLINT(modernize-use-equals-default): as LevelRows.
 };

@@ -17,10 +17,10 @@ namespace fpbm {
 /// than a tick, and all backward corrections, are smooth. A clock whose time at the first tick is known is not
 /// estimated.
 ///
-/// A stamp is rejected if it is not newer than the newest stamp, or too far ahead (follows()). If stamps are rejected
-/// for a whole timeout, at least three, and follow each other, the clock of the sender was reset, and the estimate
-/// starts again. After a silence of 10 s, any stamp that does not follow the newest stamp counts as a stamp of a reset
-/// clock.
+/// A stamp is rejected if it is not newer than the newest stamp, or too far ahead (follows()). If at least three stamps
+/// are rejected for a whole timeout, and these stamps follow each other, the clock of the sender was reset, and the
+/// estimate starts again. After a silence of 10 s, any stamp that does not follow the newest stamp counts as a stamp of
+/// a reset clock.
 template <typename Scalar>
 class StampClock {
  public:
@@ -40,8 +40,8 @@ class StampClock {
   /// Rate of the clock of the stamps in the coming tick [s/s].
   [[nodiscard]] Scalar rate() const noexcept { return Scalar(1) - slow_ - correction() / dt_; }
 
-  /// Processes a stamp. Returns the time from the newest stamp to this stamp [s], which becomes the newest, or no value
-  /// if the stamp is rejected.
+  /// Processes a stamp. If the stamp is rejected, returns no value. Otherwise, returns the time since the newest stamp
+  /// [s], and this stamp becomes the newest stamp.
   [[nodiscard]] std::optional<Scalar> accept(double stamp) noexcept {
     if (!std::isfinite(stamp)) return {};
     if (!learns_) return hear_known(stamp);
@@ -96,9 +96,9 @@ class StampClock {
   /// Rate by which an estimated clock is slow: the largest drift of usual quartz clocks. 0 to 2e-4 pass; 5e-4 fails.
   static constexpr Scalar kSlow = Scalar(1e-4);
 
-  /// Whether a stamp is plausible that is `elapsed` [s] newer than another stamp of `since` [s] ago: it is newer, by at
-  /// most twice the time and half a timeout. A simulation may run at twice the speed, and the earlier stamp may have
-  /// been delayed. Factors of 1 to 8, and times from half a timeout to a timeout, pass TargetStream*.
+  /// Whether a stamp follows an earlier stamp of `since` [s] ago. The stamp is newer by `elapsed` [s], which must be
+  /// positive and at most twice `since` plus half a timeout. A simulation may run at twice the speed, and the earlier
+  /// stamp may have been delayed. Factors of 1 to 8, and times from half a timeout to a timeout, pass TargetStream*.
   [[nodiscard]] bool follows(double elapsed, Scalar since) const noexcept {
     return elapsed > 0.0 && elapsed <= static_cast<double>(Scalar(2) * since + timeout_ / Scalar(2));
   }
@@ -113,8 +113,8 @@ class StampClock {
     return elapsed;
   }
 
-  /// Counts a stamp that does not follow. Returns true, and starts the estimate again, if the run of these stamps, or
-  /// the silence before the stamp, shows that the clock was reset.
+  /// Counts a stamp that does not follow the newest stamp. If the run of these stamps, or the silence before this
+  /// stamp, shows that the clock was reset, starts the estimate again and returns true.
   [[nodiscard]] bool set_anew(double stamp) noexcept {
     if (rejected_ > 0 && stamp > last_rejected_ && follows(stamp - first_rejected_, rejected_for_)) {
       last_rejected_ = stamp;

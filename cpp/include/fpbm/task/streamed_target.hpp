@@ -11,16 +11,16 @@ namespace fpbm {
 /// Target that is received as points, with a velocity that is estimated from the points.
 ///
 /// The velocity of each axis is the smaller of the last two difference quotients, or zero if their signs differ
-/// (minmod). For a target with constant velocity, the estimate is exact after three points. For a target that jumps, it
-/// is zero.
+/// (minmod). For a target with constant velocity, the estimate is exact after three points. For a target that jumps,
+/// the estimate is zero.
 template <typename Space, typename Scalar>
 class StreamedTarget {
  public:
   using Point = typename Space::template Point<Scalar>;
   using Twist = Vector<Space::kRows, Scalar>;
 
-  /// At rest at x until the first point. Difference quotients are of points at least `least` and less than `most` apart
-  /// in time [s]. No velocity exceeds `fastest`.
+  /// At rest at x until the first point. Each difference quotient uses two points with a time difference of at least
+  /// `least` and less than `most` [s]. No velocity exceeds `fastest`.
   StreamedTarget(const Point& x, Scalar least, Scalar most, Twist fastest) noexcept
       : least_(least), most_(most), fastest_(std::move(fastest)) {
     rest_at(x);
@@ -33,7 +33,7 @@ class StreamedTarget {
   /// Whether a point was received since the target was at rest.
   [[nodiscard]] bool streams() const noexcept { return streams_; }
 
-  /// Adds a point, `elapsed` [s] after the point before.
+  /// Adds a point, `elapsed` [s] after the previous point.
   void push(const Point& x, Scalar elapsed) noexcept {
     since_ += elapsed;
     if (!streams_ || !(since_ < most_)) {

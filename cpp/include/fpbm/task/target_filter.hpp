@@ -24,8 +24,8 @@ namespace fpbm {
 /// time, the two others in proportion. A target without a message for a timeout stops in minimum time within the
 /// bounds.
 ///
-/// After construction, no function allocates, throws or has an unbounded loop, for all pushed messages, and no bound is
-/// exceeded.
+/// No bound is exceeded. After construction, no function allocates, throws or has an unbounded loop. Both statements
+/// hold for all pushed messages.
 template <typename Space, typename Scalar = double>
 class TargetFilter {
  public:
@@ -44,7 +44,7 @@ class TargetFilter {
     if (!is_point(x0)) validation::reject("x0", ": must be finite, with a rotation R");
   }
 
-  /// Target [m, rad], observed at a time `stamp` [s] on any clock. Its R is replaced by the nearest rotation. Returns
+  /// Target [m, rad], observed at a time `stamp` [s] on any clock. R of x is replaced by the nearest rotation. Returns
   /// false for a rejected message, which has no effect: x is not a point (is_point), or the stamp is not finite, not
   /// newer than all stamps before, or too far ahead (StampClock).
   bool push(const Point& x, double stamp) noexcept {
@@ -105,7 +105,7 @@ class TargetFilter {
   }
 
  private:
-  /// The reference after a time, and the displacement to it [m, rad] before rounding.
+  /// The reference after a time, and the displacement to this reference [m, rad] before rounding.
   struct Step {
     Reference<Space, Scalar> to;
     Twist displacement;

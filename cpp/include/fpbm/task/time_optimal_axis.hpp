@@ -61,7 +61,8 @@ struct TimeOptimalAxis {
   }
 
  private:
-  /// For any number, the stop does not end beyond the target. With 12, TargetTurn.from_a_motion fails.
+  /// Rounds of largest_below_zero(). For any number of rounds, the stop does not end beyond the target. With 12,
+  /// TargetTurn.from_a_motion fails.
   static constexpr int kRounds = 16;
 };
 

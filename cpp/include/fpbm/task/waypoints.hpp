@@ -47,8 +47,9 @@ class Waypoints {
   }
 
   /// Fastest path within the bounds, which are never exceeded. The duration is at most 0.5 % longer than the shortest
-  /// duration, rounded up to a multiple of 0.01 s, so that usual steps divide it. It is divided among the pieces as in
-  /// lasting(). Also throws std::invalid_argument if no bound limits the tip.
+  /// duration, rounded up to a multiple of 0.01 s, so that usual steps divide the duration. The duration is divided
+  /// among the pieces as in lasting(). Throws std::invalid_argument under the conditions of lasting(), and if no bound
+  /// limits the tip.
   [[nodiscard]] static Waypoints within(const std::vector<Point>& points, const TipBounds<Scalar>& bounds) {
     require_bound("velocity", bounds.velocity);
     require_bound("acceleration", bounds.acceleration);
@@ -95,7 +96,7 @@ class Waypoints {
   using Coordinates = Vector<kCoordinates, Scalar>;
 
   /// Points of the spline: displacements from the first point. The sign of each quaternion is chosen for the smaller
-  /// angle from the quaternion before.
+  /// angle from the previous quaternion.
   static std::vector<Coordinates> rows(const std::vector<Point>& points) {
     require_points(points);
     std::vector<Coordinates> result(points.size());
