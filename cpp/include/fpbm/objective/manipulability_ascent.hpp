@@ -25,7 +25,7 @@ struct ManipulabilityAscent {
   static constexpr int kDof = Scheme::kDof;
 
   Scheme scheme;
-  Arm arm;      ///< The same arm, for the derivatives of J.
+  Arm arm;      ///< The arm that the scheme moves, for the derivatives of J.
   Scalar gain;  ///< [rad²/s²], or [rad²/s] at velocity level, per unit of w.
 
   ManipulabilityAscent(const Scheme& scheme_, const Arm& arm_, Scalar gain_) : scheme(scheme_), arm(arm_), gain(gain_) {

@@ -17,12 +17,12 @@ namespace fpbm {
 ///
 /// The damping kₙ [1/s] stops the self-motion. The rest posture q_rest [rad] attracts the joints with the stiffness kₚ
 /// ([1/s²], or [1/s] at velocity level). Centring moves the joints away from their bounds. c ([rad/s²], or [rad/s]) is
-/// the free choice in the general solutions (3) and (5) of docs/equations.md. Each with_… function returns a copy with
-/// its part added, and throws std::invalid_argument if a value is out of range.
+/// the free choice in the general solutions (3) and (5) of docs/equations.md. Each function with_… returns a copy with
+/// one more part, and throws std::invalid_argument if a value is out of range.
 ///
-/// Repetitive motion planning (Zhang and others, Mechatronics 18, 2008), which removes the drift of the joints on
-/// closed paths, is a rest posture at the start: at velocity level, with stiffness λ; at acceleration level, with
-/// damping 2λ and stiffness λ², which is critical damping.
+/// Repetitive motion planning (Zhang and others, Mechatronics 18, 2008) removes the drift of the joints on closed
+/// paths. This scheme is a rest posture at the start: at velocity level with stiffness λ, at acceleration level with
+/// stiffness λ² and damping 2λ (critical damping).
 template <int N, typename Scalar = double>
 class NullSpace {
  public:
