@@ -52,9 +52,9 @@ template <int kTurns, int M, int N, typename Scalar>
   }
 }
 
-/// Solutions with J C, where C Cᵀ = W⁻¹, and with the Gram matrix JW⁻¹Jᵀ. If J is nearly singular, damping Δ is added
-/// to the Gram matrix (SingularDamping). With Value = Pair<Scalar>, solves for two different W in parallel. All rows of
-/// J count in metres: D multiplies the last kTurns rows, which are angular, by length [m].
+/// Solves systems with J C, where C Cᵀ = W⁻¹, and with the Gram matrix JW⁻¹Jᵀ. If J is nearly singular, damping Δ is
+/// added to the Gram matrix (SingularDamping). With Value = Pair<Scalar>, solves for two different W in parallel. All
+/// rows of J are converted to metres: D multiplies the last kTurns rows, which are angular, by length [m].
 template <int M, int N, typename Value, int kTurns = 0>
 class DampedGram {
  public:
@@ -68,9 +68,9 @@ class DampedGram {
              const Scalar& length = Scalar(1)) = delete;
 
   /// Factorises JC, given rows = (JC)ᵀ and an upper bound on the largest eigenvalue of W⁻¹ (for a pair: of the first
-  /// W). Returns kDamped if Δ is not zero, or the reason for a missing factorisation. sigma, unless null, is set to the
-  /// lower bound 1/√tr((JJᵀ)⁻¹) on σ_min(J) for a pair or W = I, if J has a factorisation and no angular rows, and
-  /// damping is on.
+  /// W). Returns kDamped if Δ is not zero, or the reason for a missing factorisation. If J has a factorisation and no
+  /// angular rows, and damping is on, sigma, unless null, is set to the lower bound 1/√tr((JJᵀ)⁻¹) on σ_min(J). This
+  /// requires a pair, or W = I.
   [[nodiscard]] Status factor(const Matrix<N, M, Value>& rows, Scalar inverse_bound,
                               [[maybe_unused]] Scalar* sigma = nullptr) noexcept {
     if constexpr (kTurns > 0) {

@@ -15,13 +15,13 @@ namespace fpbm {
 template <typename Scalar>
 inline constexpr Scalar kLevelRadius = Scalar(0.1);
 
-/// Solves a task level that is nearly singular, or nearly in conflict with higher levels. With A = L Qᵀ
+/// Solves a task level that is nearly singular, or nearly in conflict with higher levels. With A Z = L Qᵀ
 /// (LevelSpace::add),
 ///
 ///   w = Lᵀ (L Lᵀ + Δ)⁻¹ r,
 ///
-/// where Δ is the spectral function of LostDirections for ε. Δ is zero in directions in which the posture and the
-/// higher levels leave a singular value σ ≥ ε of A. |w| ≤ 1.17 |r|/ε. w is continuous in L and r.
+/// where Δ is the spectral function of LostDirections for ε. Δ is zero in directions in which A Z has a singular value
+/// σ ≥ ε. |w| ≤ 1.17 |r|/ε. w is continuous in L and r.
 ///
 /// If rows are dependent, L has fewer columns than rows, and w = (LᵀL + Δ)⁻¹ Lᵀ r. Both forms are equal, since L Lᵀ and
 /// LᵀL have the same non-zero eigenvalues.
@@ -75,7 +75,7 @@ class DampedLevel {
     return sum;
   }
 
-  /// LᵀL. Each zero column of L has a large eigenvalue instead of 0, so that it does not count as lost.
+  /// LᵀL. Each zero column of L has a large eigenvalue instead of 0, so that the column does not count as lost.
   [[nodiscard]] Matrix<M, M, Scalar> gram_of_columns(const Matrix<M, M, Scalar>& L,
                                                      Eigen::Index columns) const noexcept {
     auto gram = filled<Matrix<M, M, Scalar>>(L.rows());
@@ -90,9 +90,9 @@ class DampedLevel {
     return gram;
   }
 
-  /// This eigenvalue, relative to tr(LᵀL) + ε². More than 1, so that the eigenvalue is above ε². The pivot tolerance of
-  /// the Cholesky factorisation, 64 ε in float, is relative to this eigenvalue: with 1e3, the factorisation rejects the
-  /// other eigenvalues (DampedLevels.in_float_damp_dependent_rows).
+  /// Eigenvalue of each zero column of L, relative to tr(LᵀL) + ε². More than 1, so that the eigenvalue is above ε².
+  /// The pivot tolerance of the Cholesky factorisation, 64 ε in float, is relative to this eigenvalue: with 1e3, the
+  /// factorisation rejects the other eigenvalues (DampedLevels.in_float_damp_dependent_rows).
   static constexpr Scalar kApart = Scalar(2);
 
   Scalar epsilon_squared_;

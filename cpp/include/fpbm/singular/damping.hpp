@@ -9,23 +9,23 @@ namespace fpbm {
 /// Instead of JW⁻¹Jᵀ, the schemes invert JW⁻¹Jᵀ + Δ (damped least squares: Nakamura and Hanafusa 1986, Wampler 1986). Δ
 /// is defined in LostDirections and acts only in nearly lost task directions, with ε = radius ‖J‖_F. Angular rows of J
 /// are multiplied by the characteristic length of the arm, so that all rows are in metres.
-/// Δ is smooth in q, and exactly zero while σ_min ≥ ε. ‖Jᵀ(JJᵀ + Δ)⁻¹‖ ≤ 1.17/ε. With weights, whose W⁻¹ has a largest
-/// diagonal entry of 1, ‖W⁻¹Jᵀ(JW⁻¹Jᵀ + Δ)⁻¹‖ ≤ 1.28 √cond(W)/ε.
+/// Δ is smooth in q, and exactly zero while σ_min ≥ ε. ‖Jᵀ(JJᵀ + Δ)⁻¹‖ ≤ 1.17/ε. With weights W, scaled so that the
+/// largest diagonal entry of W⁻¹ is 1, ‖W⁻¹Jᵀ(JW⁻¹Jᵀ + Δ)⁻¹‖ ≤ 1.28 √cond(W)/ε.
 ///
 /// A lost direction becomes a direction of the null space. At acceleration level, −brake (tr Δ/ε²) qd is added to z, so
 /// that an arm with an unreachable target stops at the workspace boundary.
 template <typename Scalar = double>
 class SingularDamping {
  public:
-  /// radius: fraction of ‖J‖_F, in [0, 1], below which a singular value counts as being lost; 0 switches damping off.
-  /// brake: null-space damping at a singular posture [1/s]. docs/singularities.md has the effect of both values, which
+  /// radius: fraction of ‖J‖_F, in [0, 1], below which a singular value counts as lost; 0 switches damping off. brake:
+  /// null-space damping at a singular posture [1/s]. docs/singularities.md has the effect of both values, which
   /// docs/figures/singularities.py prints. Throws std::invalid_argument if a value is out of range.
   explicit SingularDamping(Scalar radius = Scalar(0.02), Scalar brake = Scalar(10)) : radius_(radius), brake_(brake) {
     validation::require_fraction("singular_radius", radius);
     validation::require_non_negative("singular_brake", brake);
   }
 
-  /// No damping: the undamped law, which fails at a singular posture. The default of every scheme.
+  /// No damping, the default of every scheme: the law fails at a singular posture.
   [[nodiscard]] static SingularDamping off() noexcept { return SingularDamping(Scalar(0), Scalar(0)); }
 
   [[nodiscard]] Scalar radius() const noexcept { return radius_; }
