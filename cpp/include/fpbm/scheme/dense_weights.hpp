@@ -82,7 +82,8 @@ class DenseWeights {
       }
     }
     using std::abs;
-    // Half of the digits: W may be a product of matrices with a round-off error, or an input with few decimals.
+    // Tolerance of half of the digits: W may be a product of matrices with a round-off error, or an input with few
+    // decimals.
     const Scalar tolerance = std::sqrt(std::numeric_limits<Scalar>::epsilon()) * largest_magnitude(W);
     for (Eigen::Index j = 0; j < W.cols(); ++j) {
       for (Eigen::Index i = j + 1; i < W.rows(); ++i) {

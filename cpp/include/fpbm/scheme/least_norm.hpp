@@ -21,11 +21,11 @@ struct NoForce {};
 ///
 ///   u = u₀ + J_W⁺(v − J u₀) = C ((JC)⁺v + (I − (JC)⁺JC) y₀),   C Cᵀ = W⁻¹,   y₀ = C⁻¹u₀,   u₀ = z + W⁻¹f.
 ///
-/// u: velocities or accelerations, by level. force(gram) returns f, which needs the factorised Gram matrix JW⁻¹Jᵀ; or
-/// force is NoForce. undamped: result of undamped_result(), or NoUndampedResult. The last kTurns rows of J are angular.
-/// length: characteristic length of the arm [m]. sigma: as in DampedGram::factor(). Returns kDamped if damping acts. If
-/// the status is a failure, u does not change. Flattened, since a compiler may not inline small calls in a large
-/// translation unit.
+/// u: velocities or accelerations, by level. force(solutions) returns f from solutions with the factorised Gram matrix
+/// JW⁻¹Jᵀ; or force is NoForce. undamped: result of undamped_result(), or NoUndampedResult. The last kTurns rows of J
+/// are angular. length: characteristic length of the arm [m]. sigma: as in DampedGram::factor(). Returns kDamped if
+/// damping acts. If the status is a failure, u does not change. Flattened, since a compiler may not inline small calls
+/// in a large translation unit.
 template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weights, typename Force, typename Known>
 [[nodiscard, gnu::flatten]] Status least_norm(const Weights& weights, const Vector<M, Scalar>& v, const Force& force,
                                               const NullSpace<N, Scalar>& null_space,

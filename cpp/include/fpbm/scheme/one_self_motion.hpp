@@ -13,7 +13,7 @@
 #include "fpbm/singular/damped_gram.hpp"
 
 /// Laws for degree of redundancy 1 (docs/equations.md): an arm with one joint more than its task has rows has one
-/// self-motion v, J v = 0. Every law then is u = p + γ v, where p is any solution of J p = b. p is computed from J and
+/// self-motion v, J v = 0. Every law is then u = p + γ v, where p is any solution of J p = b. p is computed from J and
 /// not from JJᵀ, so that the condition number of JJᵀ has no effect.
 namespace fpbm {
 
@@ -65,9 +65,9 @@ struct NoUndampedResult {
   static void set_undamped_lanes(Result&) noexcept {}
 };
 
-/// Result of the law for degree of redundancy 1, which is computed before the damping is known. If damping does not
-/// act, this result is returned in all cases, so that a scheme with damping returns the same bits as a scheme without
-/// damping.
+/// Result of the law for degree of redundancy 1 without damping. The result is computed before it is known whether
+/// damping acts. If damping does not act, this result is returned in all cases, so that a scheme with damping returns
+/// the same bits as a scheme without damping.
 template <int N, typename Scalar>
 struct UndampedResult {
   Mask<Scalar> answered{false};  ///< u is the result without damping.
@@ -87,7 +87,7 @@ struct UndampedResult {
     }
   }
 
-  /// take_if_undamped() for each lane. In `result` of the Gram matrix, a lane is NaN unless damping certainly does not
+  /// take_if_undamped() for each lane. result: solution with the Gram matrix, NaN in each lane in which damping may
   /// act.
   void set_undamped_lanes([[maybe_unused]] Vector<N, Scalar>& result) const noexcept {
     if constexpr (kInLanes<Scalar>) {

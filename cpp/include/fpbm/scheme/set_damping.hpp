@@ -27,9 +27,9 @@ inline constexpr bool
     kHasDamping<Scheme, Level::kAcceleration, std::void_t<decltype(Scheme::singular), decltype(Scheme::null_space)>> =
         true;
 
-/// Sets the damping that a scheme does not have: near singular postures if its own radius is 0, and in the null space
-/// if its own null-space damping is 0. A scheme with both keeps both. With lanes, call set_damping() for the scheme of
-/// each lane.
+/// Sets the damping that a scheme does not have. If the radius of the scheme is 0, sets the damping near singular
+/// postures. At acceleration level, if the null-space damping of the scheme is 0, sets the null-space damping. With
+/// lanes, call set_damping() for the scheme of each lane.
 ///
 /// A scheme type without these members needs an overload in its own namespace before it can be used in a Tracker or an
 /// AnyScheme:
@@ -63,7 +63,7 @@ inline constexpr bool kTakesDamping<
     Scheme, Scalar,
     std::void_t<decltype(set_damping(std::declval<Scheme&>(), std::declval<const DefaultDamping<Scalar>&>()))>> = true;
 
-/// set_damping(), with a message if it is not defined for the scheme.
+/// set_damping(). If set_damping() is not defined for the scheme, the compiler prints a message.
 template <typename Scheme, typename Scalar>
 void give_damping(Scheme& scheme, const DefaultDamping<Scalar>& damping) {
   static_assert(

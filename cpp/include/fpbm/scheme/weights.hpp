@@ -8,14 +8,14 @@
 #include "fpbm/linalg/pair.hpp"
 #include "fpbm/linalg/product.hpp"
 
-/// Weights W of the joint motion, symmetric and positive definite, as three types with increasing cost. The third type
-/// is in dense_weights.hpp.
+/// Weights W of the joint motion, symmetric and positive definite, as three types with increasing cost. The third type,
+/// DenseWeights, is in dense_weights.hpp.
 ///
 /// Only the ratios of W matter (docs/equations.md, Tests of the statements). Each type scales W so that the largest
 /// diagonal entry of W⁻¹ is 1: W may have any magnitude. All types have the same functions:
 ///   times(a)            W a
 ///   root(a)             C a, where C Cᵀ = W⁻¹
-///   inverse_root(a)           C⁻¹a
+///   inverse_root(a)     C⁻¹a
 ///   root_transpose(A)   CᵀA for a vector, or for Jᵀ
 ///   with_unit(J)        pairs of the entries of Jᵀ and CᵀJᵀ
 ///   inverse_bound()     an upper bound on the largest eigenvalue of W⁻¹
