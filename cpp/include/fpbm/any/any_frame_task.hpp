@@ -15,7 +15,7 @@
 
 namespace fpbm {
 
-/// Coordinates that a task controls: of a frame, or the position of the centre of mass, which has no frame.
+/// Coordinates that a task controls: coordinates of a frame, or the position of the centre of mass, which has no frame.
 enum class FrameCoordinates { kPosition, kOrientation, kPose, kAxis, kCenterOfMass };
 
 /// Task space of any task of a frame: poses [m, rad], or directions, which are the z axes of poses. Linear rows are
@@ -54,26 +54,26 @@ struct FrameSpace {
   }
 };
 
-/// Task of a frame whose type and rows are known at run time: PositionTask, OrientationTask, PoseTask or AxisTask, a
-/// pose with fewer rows, and all of them relative to another frame (RelativeTask); or a CenterOfMassTask.
+/// Task whose type and rows are known at run time: PositionTask, OrientationTask, PoseTask, AxisTask, a pose with fewer
+/// rows, a RelativeTask of one of these tasks, or a CenterOfMassTask.
 class AnyFrameTask {
  public:
   using Scalar = double;
   using Space = FrameSpace;
   static constexpr int kRows = Eigen::Dynamic;
   static constexpr bool kWhole = false;
-  /// Whether a task selects x, y, z and the rotations about them.
+  /// Whether a task selects x, y, z and the rotations about these axes.
   using Selection = std::array<bool, 6>;
 
   TaskGains<> gains = TaskGains<>(0.0, 0.0);
 
-  /// No task, without rows.
+  /// Empty task, without rows.
   AnyFrameTask() = default;
 
-  /// selected: rows that the kind does not have are ignored; kAxis ignores all rows. in_frame: rows along the axes of
-  /// the frame, otherwise of the base frame. axis: in the frame, read by kAxis only. reference: the frame that replaces
-  /// the base frame in a relative task. Throws std::invalid_argument if no row is selected, or the axis is zero or not
-  /// finite.
+  /// selected: rows that the kind does not have are ignored; kAxis ignores all rows. in_frame: whether the rows are
+  /// along the axes of the frame, instead of the base frame. axis: in the frame, read by kAxis only. reference: the
+  /// frame that replaces the base frame in a relative task. Throws std::invalid_argument if no row is selected, or the
+  /// axis is zero or not finite.
   AnyFrameTask(FrameCoordinates kind, const LinkFrame<>& frame, const TaskGains<>& gains_, const Selection& selected,
                bool in_frame, const Vector<3>& axis = {0.0, 0.0, 1.0},
                std::optional<LinkFrame<>> reference = std::nullopt)

@@ -18,7 +18,7 @@ class AnyPostureTask {
 
   TaskGains<> gains = TaskGains<>(0.0, 0.0);
 
-  /// No task, without rows.
+  /// Empty task, without rows.
   AnyPostureTask() = default;
 
   /// joints: indices from 0, each once. Throws std::invalid_argument if there are no joints, or more than kMaxDof.

@@ -13,8 +13,8 @@
 /// Arms in space with six and seven joints use code of fixed size: a simulated step of the Panda then needs 15 %
 /// (position) or 10 % (pose) fewer instructions. For four joints in the plane, the gain would be 5 %.
 ///
-/// Templates, so that the functions are compiled only where they are called. Otherwise, every translation unit that
-/// includes them would need 4 s more.
+/// The functions are templates, so that only translation units that call a function compile the function. Otherwise,
+/// every translation unit with this header would need 4 s more.
 namespace fpbm {
 
 /// Planar arm with these link lengths [m].
