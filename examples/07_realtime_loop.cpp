@@ -60,7 +60,7 @@ class Histogram {
     return kLeast * std::pow(10.0, static_cast<double>(bin) / kPerDecade) * 1e-3;
   }
 
-  /// Upper edge of the quantile's bin [µs]: at most 5 % too high.
+  /// Upper edge of the bin that contains the quantile [µs], at most 5 % too high.
   [[nodiscard]] double quantile(double share) const {
     std::size_t bin = 0;
     for (long below = bins_[0]; static_cast<double>(below) < share * static_cast<double>(total_);) {
@@ -151,7 +151,7 @@ int main(int argc, char** argv) {
     const Nanoseconds awake = now();
     lateness.add(awake - deadline);
 
-    // Circles for 60 % of the time, then 20 % toward the unreachable target, 20 % back, and the stop.
+    // Circles for 60 % of the time, then motion toward the unreachable target for 20 %, back for 20 %, and the stop.
     const double share = static_cast<double>(deadline - begin) * 1e-9 / seconds;
     if (!stopping && (interrupted || share >= 1.0)) {
       stopping = true;

@@ -37,13 +37,13 @@ PUSH_LASTS = 0.3  # Duration of the push [s].
 
 WEIGHTS = [8, 8, 4, 4, 2, 1, 1]  # Larger near the base, where joints carry more.
 SCHEME = {"k1": 60, "k2": 900, "null_damping": 10, "rest_posture": HOME, "null_stiffness": 25}
-# A quarter of k1 k2, the gain at the stability limit. The bound is for m/s² and rad/s²: the friction torque of the
-# wrist divided by its inertia is about 6 rad/s².
+# A quarter of the gain at the stability limit, k1 k2. The bound is in m/s² and rad/s²: the friction torque of the wrist
+# divided by the inertia of the wrist is about 6 rad/s².
 INTEGRAL = {"integral_gain": 0.25 * 60 * 900, "integral_bound": 10.0}
 
 
 def margins() -> fp.JointLimits:
-    """Limits slightly inside the arm's limits, because the realised acceleration differs from the commanded one."""
+    """Limits slightly inside the arm's limits: the realised acceleration differs from the commanded acceleration."""
     real = ARM.limits
     return fp.JointLimits(
         lower=real.lower + 0.005,  # [rad]
@@ -59,7 +59,7 @@ def phase(t: float) -> str:
 
 def reference(t: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Pose, velocity and acceleration of the target [m, s]. The orientation is constant."""
-    way, velocity, acceleration = CIRCLE.sample(t)  # At rest after its end.
+    way, velocity, acceleration = CIRCLE.sample(t)  # At rest after the end of the circle.
     x = START.copy()
     x[:3, 3] += way + AWAY.get(phase(t), (0, 0, 0))
     return x, np.append(velocity, np.zeros(3)), np.append(acceleration, np.zeros(3))

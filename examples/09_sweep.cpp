@@ -1,4 +1,4 @@
-// A Panda on a circle from eleven start postures, from MAN (alpha = 0) to WMVN (alpha = 1), undamped and damped.
+// A Panda on a circle from eleven start postures: MAN (alpha = 0) to WMVN (alpha = 1), undamped and damped.
 
 #include <algorithm>
 #include <cstdio>

@@ -21,7 +21,8 @@ for name, path in paths.items():
         if (name, objective) == ("tricuspid", "peak_velocity"):
             tuning.plot().savefig("tuning.png")
 
-# A Panda draws a circle, with four degrees of redundancy if the orientation is free, and one if it is constant.
+# A Panda draws a circle, with four degrees of redundancy if the orientation is free, and one degree if the orientation
+# is constant.
 panda = fp.SerialArm.preset("panda")
 ready = np.array([0, -0.3, 0, -2.2, 0, 2.0, 0.785])  # [rad]
 circle = fp.Circle(0.15, 4.0).in_plane("yz")

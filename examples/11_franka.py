@@ -4,9 +4,9 @@
     python examples/11_franka.py --robot 172.16.0.2     with a real robot
 
 libfranka calls every millisecond and accepts joint positions. The robot rejects positions with a velocity, acceleration
-or jerk out of bounds. The tracker keeps its commands within all these bounds. From poses that are late and irregular,
-with gaps, a TargetFilter computes a motion that the arm can follow. This program has never run on a robot: start
-slowly, with the stop button at hand. Ctrl-C brings the arm to rest and ends the program.
+or jerk out of bounds. The tracker keeps its commands within all these bounds. A TargetFilter computes a motion that the
+arm can follow from late and irregular poses with gaps. This program has never run on a robot: start slowly, with the
+stop button at hand. Ctrl-C brings the arm to rest and ends the program.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ except ImportError:
 
 DT = 1e-3  # A tick, equal to the cycle of the robot [s].
 ARM = fp.SerialArm.preset("fr3")
-MARGIN = 1e-3  # Distance from every bound that libfranka's own limiter keeps (kLimitEps).
+MARGIN = 1e-3  # Distance that libfranka's own limiter keeps from every bound (kLimitEps).
 LIMITS = replace(
     ARM.limits,
     velocity=ARM.limits.velocity - MARGIN,
@@ -44,8 +44,8 @@ LIMITS = replace(
 WEIGHTS = [8, 8, 4, 4, 2, 1, 1]  # Larger near the base, where joints carry more.
 
 CIRCLE = fp.Circle(0.08, 3.0, time_law="quintic").in_plane("xy")  # radius [m], duration [s]
-TIP = {"velocity": 0.5, "acceleration": 1.5, "jerk": 30.0}  # Bounds of the filter for the tip [m, s].
-TURN = {"angular_velocity": 1.0, "angular_acceleration": 3.0, "angular_jerk": 60.0}  # For its orientation [rad, s].
+TIP = {"velocity": 0.5, "acceleration": 1.5, "jerk": 30.0}  # Bounds of the filter on position [m, s].
+TURN = {"angular_velocity": 1.0, "angular_acceleration": 3.0, "angular_jerk": 60.0}  # Bounds on orientation [rad, s].
 
 interrupted = Event()
 
@@ -100,7 +100,7 @@ def ticks(tracker: fp.Tracker, path: fp.Path, targets: list[Target]) -> Iterator
 
 @dataclass
 class Motion:
-    """Joint positions of every tick [rad], the commands among them, and results."""
+    """Joint positions of every tick [rad], indices and times of the commands, and results."""
 
     q: list[np.ndarray]  # The first is the start.
     sent: list[int] = field(default_factory=list)  # Indices of the commands in q.
@@ -136,7 +136,7 @@ def move(robot: franka.Robot, path: fp.Path = CIRCLE, seconds: float = 4.0) -> M
     control = robot.start_joint_position_control(franka.ControllerMode.JointImpedance)
     while not finished:
         # The tracker continues from its own command, which the robot follows, and does not use the measured state. The
-        # first call has no tick. A call after lost packets has several ticks, because the robot moved on.
+        # first call has no tick. A call after lost packets has several ticks, because the robot continued to move.
         state, period = control.readOnce()
         for _ in range(round(period.to_sec() / DT)):
             tick = next(due)

@@ -1,4 +1,4 @@
-"""A Panda with a reference through a post and into a table, without and with collision avoidance."""
+"""The reference of a Panda passes through a post and into a table: motions without and with collision avoidance."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""A Panda carries an upright cup to a target and back, with a wall for its elbow and at most 0.5 m/s."""
+"""A Panda carries an upright cup to a target and back. A wall bounds the elbow, and the tip has at most 0.5 m/s."""
 
 import numpy as np
 
