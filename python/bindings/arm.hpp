@@ -11,7 +11,7 @@
 
 namespace fpbm::bindings {
 
-/// Tip, J and Jd in any task space, from an arm or from elsewhere.
+/// Tip, J and Jd in any task space, from an arm or from another library.
 struct AnyKinematics {
   std::variant<Kinematics<Position<2>, kDynamic>, Kinematics<PlanarPose, kDynamic>, Kinematics<Position<3>, kDynamic>,
                Kinematics<Pose, kDynamic>>
@@ -28,7 +28,7 @@ void require_enough_joints(Eigen::Index dof) {
   }
 }
 
-/// An arm of either kind.
+/// A planar arm or an arm in space.
 struct Arm : Model {
   using Any = std::variant<AnyArm<Position<2>>, AnyArm<Position<3>>>;
 
@@ -36,10 +36,10 @@ struct Arm : Model {
   explicit Arm(const Chain<>& chain);
 
   Any any;
-  std::variant<JointVector, Chain<>> source;  ///< Link lengths [m] of an arm in the plane, the chain of one in space.
+  std::variant<JointVector, Chain<>> source;  ///< Link lengths [m] of a planar arm, or the chain of an arm in space.
 
   /// Calls visitor(arm, Space) with the AnyArm and the task space of that name.
-  /// Throws std::invalid_argument if there is none.
+  /// Throws std::invalid_argument if the task space does not exist.
   template <typename Visitor>
   auto visit(const std::string& task, Visitor&& visitor) const {
     return std::visit(
@@ -66,7 +66,7 @@ struct Arm : Model {
   }
 };
 
-/// Calls visitor(arm, Space) with the task space of that name, and with the AnyArm of an arm, or null of a robot.
+/// Calls visitor(arm, Space) with the task space of that name, and with a pointer to the AnyArm, null for a robot.
 /// Throws std::invalid_argument if the task does not exist, or a robot has no stack.
 template <typename Visitor>
 auto visit_space(const Model& model, const std::string& task, bool has_stack, Visitor&& visitor) {

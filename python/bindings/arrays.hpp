@@ -24,8 +24,8 @@ inline bool is_candidate(const PyObject* /*object*/) {
   return true;
 }
 
-/// Any input of numpy.asarray: an argument that is checked and converted here, so that a wrong one is a ValueError
-/// with its name.
+/// Any input of numpy.asarray: the argument is checked and converted here, so that the ValueError for a wrong argument
+/// has its name.
 class ArrayLike : public py::object {
  public:
   PYBIND11_OBJECT_DEFAULT(ArrayLike, py::object, is_candidate)
@@ -87,7 +87,7 @@ inline Array result_array(const OptionalOut& out, const std::vector<py::ssize_t>
   validation::reject("out", ": must be a writeable, C-contiguous array of float64 of shape (" + text + ")");
 }
 
-/// One entry per joint: 1 to kMaxDof of them, not yet checked further.
+/// One entry per joint, 1 to kMaxDof entries; the values are not checked.
 inline Vector<Eigen::Dynamic> joint_vector(const ArrayLike& argument, const char* name) {
   const auto array = real_array(argument, name, 1);
   validation::require_dof(name, array.size(), 1);
@@ -131,7 +131,7 @@ Result matrix(const ArrayLike& argument, const char* name, Eigen::Index rows, Ei
   return result;
 }
 
-/// A frame: a homogeneous 4 x 4 matrix of finite numbers, of an argument that name() tells.
+/// A frame: a homogeneous 4 x 4 matrix of finite numbers. name() returns the name of the argument.
 template <typename Name>
 Transform<> transform_of(const Eigen::Matrix4d& H, const Name& name) {
   const Transform<> result{H.topRightCorner<3, 1>(), H.topLeftCorner<3, 3>()};
@@ -155,8 +155,8 @@ typename Space::template Point<double> point(const ArrayLike& argument, const ch
   }
 }
 
-/// Any object with lower, upper, velocity and acceleration, one number a joint each, none of them NaN; jerk,
-/// velocity_offset and deceleration where it has them.
+/// Limits from any object with lower, upper, velocity and acceleration, and optionally jerk, velocity_offset and
+/// deceleration. Each attribute has one number per joint, not NaN.
 inline JointLimits<Eigen::Dynamic> joint_limits(const py::object& limits) {
   const auto bound = [&](const char* name) {
     const Vector<Eigen::Dynamic> values = joint_vector(ArrayLike(py::object(limits.attr(name))), name);

@@ -14,7 +14,7 @@
 namespace fpbm::bindings {
 namespace {
 
-/// A chain of fpbm_cpp.Joint, or of anything with its attributes.
+/// A chain from objects with the attributes of fpbm_cpp.Joint.
 Chain<> chain_of(const py::typing::List<py::object>& joints, const ArrayLike& tip) {
   Chain<> chain;
   for (const py::handle given : joints) {
@@ -27,14 +27,14 @@ Chain<> chain_of(const py::typing::List<py::object>& joints, const ArrayLike& ti
 
 using PlainChain = py::typing::Tuple<py::typing::List<PlainJoint>, Array>;
 
-/// A chain as Python makes its joints from: a dictionary for each, and the tip.
+/// A chain as plain data: the keyword arguments of fpbm_cpp.Joint for each joint, and the tip.
 PlainChain plain(const Chain<>& chain) {
   py::list joints;
   for (const Joint<>& joint : chain.joints) joints.append(fields_of(joint));
   return py::make_tuple(joints, array_of(chain.tip));
 }
 
-/// The chain of a Denavit-Hartenberg table, one row (a, alpha, d, theta) a joint.
+/// The chain of a Denavit-Hartenberg table, one row (a, alpha, d, theta) per joint.
 PlainChain dh(const ArrayLike& table, const std::string& convention, const std::vector<std::string>& types) {
   const auto rows = real_array(table, "table", 2).shape(0);
   const Eigen::MatrixXd numbers = matrix(table, "table", rows, 4);

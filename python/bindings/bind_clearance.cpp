@@ -115,7 +115,7 @@ class PyClearance {
 using PlainCapsule = py::typing::Tuple<py::int_, Array, Array, py::float_, py::str>;
 using PlainPair = py::typing::Tuple<py::str, py::str>;
 
-/// Link, ends, radius and name of each of a preset's capsules; and the names of those that may meet.
+/// Link, ends, radius and name of each capsule of a preset; and the names of the pairs that may overlap.
 py::typing::Tuple<py::typing::List<PlainCapsule>, py::typing::List<PlainPair>> preset_capsules(
     const std::string& name) {
   std::vector<presets::PresetCapsules> presets(std::begin(presets::kAllCapsules), std::end(presets::kAllCapsules));

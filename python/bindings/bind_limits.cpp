@@ -21,7 +21,7 @@ using OptionalRows = std::optional<std::pair<ArrayLike, ArrayLike>>;
 constexpr int kMostRows = 16;
 static_assert(kMostRows <= kLimiterRows);
 
-/// Bounds on motions of n joints, of G u <= b.
+/// Bounds G u <= b on motions u of n joints.
 LimiterRows rows_of(const std::pair<ArrayLike, ArrayLike>& given, int n) {
   const auto& [G, b] = given;
   LimiterRows rows;
@@ -41,7 +41,7 @@ LimiterRows rows_of(const std::pair<ArrayLike, ArrayLike>& given, int n) {
   return rows;
 }
 
-/// A limiter of either level.
+/// A limiter at acceleration level or at velocity level.
 class PyLimiter {
  public:
   PyLimiter(const py::object& limits, double dt, const std::string& level)
@@ -109,7 +109,7 @@ void bind_limits(py::module_& m) {
 
 A motion is unchanged if it keeps every bound over the next tick, and the joints can then stop within the bounds.
 Otherwise, other joints replace joints on their bounds in the null space of J. If this is not sufficient, the task is
-scaled along its direction.
+scaled without a change of direction.
 
 Parameters
 ----------

@@ -37,7 +37,7 @@ double number(const ArrayLike& argument, const char* name) {
   return value;
 }
 
-/// A shape run through under the time law of that name.
+/// A path along a shape, with the time law of that name.
 template <typename Shape>
 Path make_path(const Shape& shape, double duration, const std::string& law) {
   return {AnyPath<typename Shape::Space>(fpbm::Path(shape, duration, AnyTimeLaw(law)))};
@@ -86,7 +86,7 @@ Path with_rotation(const Path& path, const ArrayLike& rotation, const std::strin
   return {AnyPath<Pose>(WithRotation(*spatial, fixed_vector<3>(rotation, "rotation"), AnyTimeLaw(law)))};
 }
 
-/// Paths in [begin, end) one after another, as a balanced tree of pairs: a sample evaluates few of them.
+/// The paths in [begin, end) one after another, as a balanced tree of pairs: a sample evaluates few pairs.
 template <typename Space>
 AnyPath<Space> sequence_in(const Path* const* begin, const Path* const* end) {
   if (end - begin == 1) return (*begin)->as<Space>();
@@ -109,7 +109,7 @@ Path sequence(const std::vector<const Path*>& paths) {
   return in(Position<2>{});
 }
 
-/// When waypoints are passed: a duration, a time for each, or bounds of the tip's motion.
+/// Timing of waypoints: a duration, the time of each waypoint, or bounds of the tip's motion.
 using Timing = std::variant<double, std::vector<double>, TipBounds<>>;
 
 template <typename Space>

@@ -16,7 +16,7 @@
 namespace fpbm::bindings {
 namespace {
 
-/// Result of one tick. Python's arrays are made when a program reads them.
+/// Result of one tick. The arrays of Python are made when a program reads the attributes.
 struct PyTick {
   JointVector q;
   JointVector qd;
@@ -27,7 +27,7 @@ struct PyTick {
   double sigma;
   Eigen::VectorXd error;
   std::optional<PyNearest> nearest;
-  Eigen::VectorXd scales;                         ///< For a stack: of each level.
+  Eigen::VectorXd scales;                         ///< For a stack: scale of each level.
   std::shared_ptr<const StackLoop::Parts> parts;  ///< For a stack: the tasks of the error's entries.
 
   [[nodiscard]] py::array_t<bool> saturated_joints() const {
@@ -73,7 +73,7 @@ PyTick tick_at(Tracker& tracker, const JointVector& q, Take&& take) {
   return python_tick(take(), nearest);
 }
 
-/// A tracker with any task, or of a stack of tasks.
+/// A tracker of one task or of a stack of tasks.
 class PyTracker {
   template <typename Space>
   using Held = std::unique_ptr<AnyTracker<Space>>;
@@ -94,7 +94,7 @@ class PyTracker {
         },
         any_);
   }
-  /// Calls visitor(tracker), also with the one of a stack.
+  /// Calls visitor(tracker), also with a tracker of a stack.
   template <typename Visitor>
   auto visit_any(Visitor&& visitor) const {
     return std::visit(
@@ -312,8 +312,8 @@ error_bound : float
     Largest tip error that the feedback uses: of the position in arm lengths (from the first joint to the tip, along the
     links), of the orientation [rad].
 integral_gain, integral_bound : float
-    Gain of the integral of the error, [1/s^3] or [1/s^2] at velocity level, off by default, and largest contribution of
-    the integral [arm lengths and radians per s^2, or per s]. Stable below k1 k2.
+    Gain of the integral of the error, [1/s^3] or [1/s^2] at velocity level; 0: no integral. Largest contribution of the
+    integral [arm lengths and radians per s^2, or per s]. A gain below k1 k2 is stable.
 stall_time : float
     If an arm is slowed, or farther than error_bound from its target, and makes no progress for this time [s], the arm
     stops until the target moves, or until resume(). math.inf: the arm never stops for this reason.
@@ -366,9 +366,9 @@ ParameterError
            py::arg("measured_delay") = TrackerOptions<>().measured_delay, py::arg("clearance") = none,
            py::arg("bounds") = py::tuple())
       .def("tick", py::overload_cast<PyFollower&>(&PyTracker::tick), py::arg("follower"),
-           "One tick along a path, whose clock advances by one tick.")
+           "One tick along a path. The clock of the path advances by one tick.")
       .def("tick", py::overload_cast<PyTargetFilter&>(&PyTracker::tick), py::arg("filter"),
-           "One tick with a filter of targets, which advances by one tick, also after stop.")
+           "One tick toward the reference of a filter. The filter advances by one tick, also after stop.")
       .def("tick", py::overload_cast<const PyReferences&>(&PyTracker::tick), py::arg("references"),
            R"(One tick of a stack toward references: a dictionary by task name.
 
@@ -383,7 +383,8 @@ x has shape (2,), (3,) or (4, 4) [m], xd and xdd (m,) [m/s, rad/s], linear rows 
 if there is no motion, the arm brakes, and the status of the tick is the cause.)")
       .def("resolve_measured",
            py::overload_cast<const ArrayLike&, const ArrayLike&, const PyReferences&>(&PyTracker::resolve_measured),
-           py::arg("q"), py::arg("qd"), py::arg("references"), "The same for a stack.")
+           py::arg("q"), py::arg("qd"), py::arg("references"),
+           "The tick of a stack for a measured state; references as for tick.")
       .def("resolve_measured",
            py::overload_cast<const ArrayLike&, const ArrayLike&, const ArrayLike&, const OptionalArray&,
                              const OptionalArray&>(&PyTracker::resolve_measured),
@@ -407,7 +408,7 @@ The tasks keep their targets; tick.scales and enable() use the new levels. Comma
            "For a stack: the frame of the task of that name, in the base frame, shape (4, 4); for an axis task, z is "
            "the axis.")
       .def("move", &PyTracker::move, py::arg("name"), py::arg("shape"), py::arg("velocity") = py::make_tuple(0, 0, 0),
-           R"(Moves an obstacle of the clearance to its present place; velocity [m/s] is its expected further motion.
+           R"(Moves an obstacle of the clearance to its present place; velocity [m/s] is the expected velocity.
 
 shape must have the kind of the given obstacle; place and size may change. Raises ParameterError if no obstacle has
 that name, or if the shape has another kind.)")

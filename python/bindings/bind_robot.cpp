@@ -17,7 +17,7 @@ namespace {
 using PlainTreeJoint = py::typing::Tuple<PlainJoint, py::int_, py::float_, Array>;
 using PlainFrame = py::typing::Tuple<py::str, py::int_, Array>;
 
-/// A class of its own: Python's Robot derives from it.
+/// A separate class, from which the Robot of Python is derived.
 struct PyRobot : Model {
   using Model::Model;
 };
@@ -26,7 +26,7 @@ LinkMass<> mass_of(double mass, const py::handle& center) {
   return {mass, fixed_vector<3>(ArrayLike(py::reinterpret_borrow<py::object>(center)), "center")};
 }
 
-/// A tree of fpbm_cpp.TreeJoint and fpbm_cpp.NamedFrame, or of anything with their attributes.
+/// A tree from objects with the attributes of fpbm_cpp.TreeJoint and fpbm_cpp.NamedFrame.
 Tree<> tree_of_python(const py::typing::List<py::object>& joints, const py::typing::List<py::object>& frames,
                       double base_mass, const ArrayLike& base_center) {
   Tree<> tree;
@@ -78,8 +78,8 @@ Array center_of_mass_at(const PyRobot& model, const ArrayLike& q) {
   return array_of(center);
 }
 
-/// The joints of a preset, with the numbers of the links that carry them, the masses that they move and the centres of
-/// these, its frames, and mass and centre of the base.
+/// Joints of a preset, each with the number of the parent link, and mass and centre of mass of the child link; frames;
+/// mass and centre of mass of the base.
 py::typing::Tuple<py::typing::List<PlainTreeJoint>, py::typing::List<PlainFrame>, py::float_, Array> robot_preset(
     const std::string& name) {
   for (const presets::RobotPreset& known : presets::kRobots) {

@@ -20,7 +20,7 @@ struct PyLevels {
 
 using PyLevelRows = std::pair<ArrayLike, ArrayLike>;
 
-/// Bounds of motions; may be infinite, not NaN.
+/// Bounds of motions, which may be infinite but not NaN.
 JointVector bounds_of(const ArrayLike& argument, const char* name) {
   const JointVector values = joint_vector(argument, name);
   for (Eigen::Index i = 0; i < values.size(); ++i) {
@@ -66,7 +66,7 @@ JointVector unit_of(const Box<kDynamic>& box, const OptionalArray& given) {
   for (Eigen::Index i = 0; i < n; ++i) {
     if (!std::isfinite(unit(i)) || unit(i) == 0.0) unit(i) = 1.0;
   }
-  // Units 1e10 apart would make the motion of a joint with little range round-off error.
+  // With units 1e10 apart, the motion of a joint with a small range would be round-off error.
   return unit.cwiseMax(1e-3 * unit.maxCoeff());
 }
 
@@ -121,7 +121,8 @@ From u_0 = rest, level by level,
     u_k = u_{k-1} + s_k (d - u_{k-1}) + Z_k g,    lower <= u_k <= upper,    0 <= s_k <= 1 as large as possible,
 
 where the columns of Z_k are a basis of the null space of J_1 ... J_k, and the null-space motion g replaces joints on
-their bounds by others. A lower level never changes J u of a higher one. Each scale s_k is the optimum of a linear program.
+their bounds by other joints. A lower level never changes J u of a higher level. Each scale s_k is the optimum of a
+linear program.
 
 Parameters
 ----------
@@ -134,7 +135,7 @@ rest : array_like, shape (n,), optional
     Initial motion within the bounds, such as the braking motion of a control loop. Default: the motion nearest to zero.
 unit : array_like, shape (n,), optional
     Unit of each joint's motion: the norm that d and g minimise is measured in these units. Default: half the distance
-    between the bounds, but at least 1e-3 of the largest.
+    between the bounds, but at least 1e-3 of the largest unit.
 
 Raises
 ------

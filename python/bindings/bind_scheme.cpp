@@ -8,7 +8,7 @@
 namespace fpbm::bindings {
 namespace {
 
-/// A trial run checks all parameters against each other, for as many joints as they tell of.
+/// Checks all parameters against each other by a trial run, for the number of joints that the parameters have.
 void check(const Scheme& scheme) {
   Eigen::Index dof = 2;
   if (scheme.c) dof = scheme.c->size();
@@ -73,7 +73,7 @@ void bind_scheme(py::module_& m) {
       .value("TASK_LOST", Status::kTaskLost, "The tip has left its reference.")
       .value("NOT_FINITE", Status::kNotFinite, "A number is not finite.")
       .finalize();
-  m.def("failed", &failed, py::arg("status"), "Whether there is no result.");
+  m.def("failed", &failed, py::arg("status"), "Whether the status means that there is no result.");
   m.def("message", &message, py::arg("status"), "Description of the status in one sentence.");
   m.def("advice", &advice, py::arg("status"), "Advice for the status in one sentence; empty for OK.");
 
@@ -113,7 +113,7 @@ ResolutionError
     If the posture is singular or the result is not finite.)")
       .def("resolve", &resolve_for_kinematics, py::arg("kinematics"), py::arg("q"), py::arg("qd"), py::arg("x"),
            py::arg("xd"), py::arg("xdd") = py::none(), py::kw_only(), py::arg("out") = py::none(),
-           "The same for tip, J and Jd from another library, as a Kinematics.");
+           "Joint motion of the scheme for tip, J and Jd from another library, as a Kinematics.");
 }
 
 }  // namespace fpbm::bindings

@@ -8,10 +8,10 @@
 namespace fpbm::bindings {
 namespace {
 
-/// Status, time of the last sample, number of samples, and arrays of which that many rows are filled.
+/// Status, time of the last sample, number of samples, and arrays with this number of filled rows.
 using Outcomes = py::typing::Tuple<Status, double, int, Arrays>;
 
-/// A whole motion, run without the interpreter's lock; within limits where there are options of them.
+/// A whole motion, run without the interpreter's lock. With limit options, the motion keeps the limits.
 Outcomes rollout(const Model& arm, const Path& path, const Scheme& scheme, const ArrayLike& q0, const ArrayLike& qd0,
                  double dt, double hold, const std::string& task, const py::object& options) {
   const State<kDynamic> start{joint_vector(q0, "q0", arm.dof()), joint_vector(qd0, "qd0", arm.dof())};

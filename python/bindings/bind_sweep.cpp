@@ -20,7 +20,7 @@ using Chunk = py::typing::Tuple<py::array, py::typing::List<Arrays>>;
 
 const LaneCode* lane_code = nullptr;
 
-/// Starts as rows, from one or from many.
+/// One start or several starts as rows.
 Array starts(const ArrayLike& q0s, int dof) {
   if (dimensions(q0s) < 2) return array_of(RowMajor(joint_vector(q0s, "q0s", dof).transpose()));
   if (dimensions(q0s) > 2) {
@@ -36,7 +36,7 @@ JointVector row(const Array& rows, py::ssize_t i) {
   return Eigen::Map<const Eigen::VectorXd>(rows.data(i, 0), rows.shape(1));
 }
 
-/// Checks all that a sweep is made of, and returns its starts as rows and the samples of each motion.
+/// Checks all arguments of a sweep. Returns the starts as rows, and the number of samples of a motion.
 py::typing::Tuple<Array, int> check_sweep(const Model& arm, const Path& path, const Schemes& schemes,
                                           const ArrayLike& q0s, double dt, double hold, const std::string& task,
                                           const py::object& options) {
@@ -48,7 +48,7 @@ py::typing::Tuple<Array, int> check_sweep(const Model& arm, const Path& path, co
     const AnyPath<Space> same = path.as<Space>();
     const JointVector rest = JointVector::Zero(arm.dof());
     for (std::size_t i = 0; i < schemes.size(); ++i) {
-      // Whether a start is within limits depends on the row, all else on the scheme alone.
+      // Only the check of a start against limits depends on the row. All other checks depend on the scheme.
       const py::ssize_t checked = limit_options ? rows.shape(0) : 1;
       for (py::ssize_t k = 0; k < checked; ++k) {
         try {
@@ -65,7 +65,7 @@ py::typing::Tuple<Array, int> check_sweep(const Model& arm, const Path& path, co
   return py::make_tuple(rows, grid.samples());
 }
 
-/// Outcomes of motions that are yet to be run.
+/// Outcomes of motions that were not run.
 py::array not_run(py::ssize_t count) {
   py::array_t<Outcome> outcomes(count);
   std::fill_n(outcomes.mutable_data(), count, Outcome::of_nothing());
@@ -106,7 +106,7 @@ Chunk sweep_chunk(const Arm& arm, const Path& path, const Schemes& schemes, cons
   });
 }
 
-/// Kinds of processor that this one is of, the best first, of those that there may be code in lanes for.
+/// Kinds of lane code that this processor can run, the best kind first.
 std::vector<std::string> processor_kinds() {
   std::vector<std::string> kinds;
 #if defined(__x86_64__) && defined(__GNUC__)
@@ -119,7 +119,7 @@ std::vector<std::string> processor_kinds() {
   return kinds;
 }
 
-/// Lets sweeps run in the lanes of this code, or of None, and returns how many motions run side by side.
+/// Selects the lane code of sweeps, or none, and returns the number of motions that run side by side.
 int use_lanes(const py::object& code) {
   lane_code = code.is_none() ? nullptr : static_cast<const LaneCode*>(py::capsule(code).get_pointer());
   return lane_code == nullptr ? 1 : lane_code->lanes;

@@ -16,7 +16,7 @@ Space space_of(const TargetFilter<Space>&) {
   return {};
 }
 
-/// Numbers of a wrong shape are an error; wrong numbers are for the filter to refuse.
+/// A wrong shape is an error; the filter rejects invalid numbers.
 template <int Size>
 Vector<Size> any_vector(const ArrayLike& argument, const char* name) {
   const auto array = real_array(argument, name, 1);
@@ -74,12 +74,12 @@ void bind_target_filter(py::module_& m) {
   };
   const auto none = py::none();
   py::class_<PyTargetFilter>(m, "TargetFilter",
-                             R"(Computes a smooth reference from targets that come at any rate, late, twice or never.
+                             R"(Computes a smooth reference from targets that arrive at any rate, late, twice or never.
 
-Each axis of the base frame moves to the target in minimum time within its bounds, in a frame that moves with the
-target: without overshoot for a target at rest, without lag for a target with constant velocity. The velocity of the
-target is estimated from the received points. A target without a message for the timeout stops. From rest, an
-orientation rotates about one axis, with its largest angle in minimum time.
+Along each axis of the base frame, the reference moves to the target in minimum time within the bounds, relative to the
+moving target: without overshoot for a target at rest, without lag for a target with constant velocity. The velocity of
+the target is estimated from the received points. If no message arrives within the timeout, the target stops. From rest,
+an orientation rotates about a constant axis, and its largest angle changes in minimum time.
 
 Parameters
 ----------
@@ -96,8 +96,8 @@ dt : float
 timeout : float
     Time without a message after which a target stops and a twist ends [s].
 start : float, optional
-    Time of the first tick on the clock of the stamps [s]. Default: estimated, so that the least delayed stamp counts as
-    not delayed.
+    Time of the first tick on the clock of the stamps [s]. Default: estimated from the stamps; the least delayed stamp
+    counts as not delayed.
 
 Raises
 ------

@@ -20,7 +20,7 @@ inline JointType joint_type(const std::string& type, const validation::Argument&
   validation::reject(name, " = '" + type + "': must be 'revolute', 'continuous' or 'prismatic'");
 }
 
-/// An fpbm_cpp.Joint, or anything with its attributes.
+/// A joint from an object with the attributes of fpbm_cpp.Joint.
 inline Joint<> joint_of_python(const py::handle& given, const validation::Argument& name) {
   const auto number = [&](const char* attribute) { return py::cast<double>(given.attr(attribute)); };
   const auto array = [&](const char* attribute) { return ArrayLike(py::object(given.attr(attribute))); };
@@ -41,7 +41,7 @@ inline Joint<> joint_of_python(const py::handle& given, const validation::Argume
 
 using PlainJoint = py::typing::Dict<py::str, py::object>;
 
-/// A joint as Python makes its own from.
+/// A joint as keyword arguments of fpbm_cpp.Joint.
 inline PlainJoint fields_of(const Joint<>& joint) {
   PlainJoint fields;
   fields["type"] = kTypes[static_cast<std::size_t>(joint.type)];

@@ -3,7 +3,7 @@
 #include "fpbm/core/lanes.hpp"
 #include "lane_code.hpp"
 
-// Python's own interface: pybind11's headers would take a quarter of the time that this takes to compile.
+// The C interface of Python, because the headers of pybind11 would take a quarter of the compile time.
 PyMODINIT_FUNC FPBM_LANE_INIT() {
   using namespace fpbm::bindings;
   constexpr auto kLanes = static_cast<int>(std::experimental::native_simd<double>::size());

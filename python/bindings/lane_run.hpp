@@ -13,7 +13,7 @@ namespace fpbm::bindings {
 inline constexpr int kLanes = static_cast<int>(std::experimental::native_simd<double>::size());
 using InLanes = fpbm::Lanes<kLanes>;
 
-/// A Scalar with get(scheme) of each scheme.
+/// A Scalar whose lanes are get(scheme) of the schemes.
 template <typename Law, typename Get>
 [[nodiscard]] InLanes each(const std::vector<Law>& laws, const Get& get) {
   return InLanes([&](auto lane) { return get(laws[lane]); });
@@ -78,7 +78,7 @@ void run_level(const ArmInLanes<Space>& arm, const AnyPath<Space>& path, const T
   }
 }
 
-/// The same by trackers, within limits.
+/// RunInLanes for trackers of one level, within limits.
 template <typename Space, typename Law>
 void track_level(const ArmInLanes<Space>& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid,
                  const std::vector<Law>& laws, TrackersInLanes<Space> trackers, const std::atomic<bool>& stop,

@@ -9,8 +9,8 @@
 
 namespace fpbm::bindings {
 
-/// A tracker for code in lanes (TrackerBatch): an AnyTracker, for joints of a number known when it is compiled.
-/// Its functions are compiled once, for every processor.
+/// A tracker for code in lanes (TrackerBatch): an AnyTracker with a number of joints that is known at compile time. The
+/// functions are compiled once for all kinds of processors.
 template <typename Space, int N>
 class LaneTracker {
  public:

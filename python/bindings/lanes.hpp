@@ -17,7 +17,7 @@
 
 namespace fpbm::bindings {
 
-/// The outcome of a motion. Not a number where there is none: of a motion that was not run, or has no sample.
+/// The outcome of a motion. The numbers are NaN if the motion was not run or has no sample.
 struct Outcome {
   static constexpr int kNotRun = -1;
   [[nodiscard]] static Outcome of_nothing() noexcept {
@@ -31,11 +31,11 @@ struct Outcome {
   MotionSummary<> summary;
 };
 
-/// The arms that there is code in lanes for.
+/// The type of the arms with code in lanes.
 template <typename Space>
 using ArmInLanes = std::conditional_t<std::is_same_v<Space, Position<2>>, PlanarArm<4>, SerialArm<7>>;
 
-/// As many schemes as there are lanes, all of one level: the list of the other is empty.
+/// One scheme for each lane, all of one level; the list of the other level is empty.
 template <typename Space>
 struct SchemesInLanes {
   static constexpr int N = ArmInLanes<Space>::kDof;
@@ -46,17 +46,17 @@ struct SchemesInLanes {
 template <typename Space>
 using TrackersInLanes = std::vector<LaneTracker<Space, ArmInLanes<Space>::kDof>>;
 
-/// Moves one arm as many times as there are lanes, side by side: under each scheme from its start, at rest; within
-/// limits where there is a tracker for each. Writes an outcome for each motion; kNotRun for one that was stopped, or
-/// that was not regular up to its end and must be run by itself, as none within limits is.
+/// Runs one motion of an arm in each lane, from the start of the lane at rest, under the scheme of the lane; with
+/// trackers, within limits. Writes an outcome for each motion. The status is kNotRun if the motion was stopped, or if a
+/// motion without limits is not finite up to its end and must be run without lanes.
 template <typename Space>
 using RunInLanes = void (*)(const ArmInLanes<Space>& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid,
                             const SchemesInLanes<Space>& schemes,
                             const std::vector<Vector<ArmInLanes<Space>::kDof>>& starts, TrackersInLanes<Space> trackers,
                             const std::atomic<bool>& stop, Outcome* outcomes);
 
-/// The code in lanes for one kind of processor. Each kind's is a module of its own, so that nothing compiled for a
-/// newer processor is ever linked into code for every processor.
+/// The code in lanes for one kind of processor. The code of each kind is a separate module, so that the linker never
+/// puts functions for a newer processor into code for all processors.
 struct LaneCode {
   int lanes;
   std::tuple<RunInLanes<Position<2>>, RunInLanes<Position<3>>, RunInLanes<Pose>> run;

@@ -9,14 +9,15 @@
 
 namespace fpbm::bindings {
 
-/// fpbm::Limiter of either level.
+/// fpbm::Limiter at acceleration level or at velocity level.
 using AnyLimiter = std::variant<Limiter<Level::kAcceleration, kDynamic>, Limiter<Level::kVelocity, kDynamic>>;
 
-/// Further bounds on motions: of as many as a guard has, so that trackers and limiters are one code.
+/// Largest number of further bounds on motions, equal to the number of a guard, so that trackers and limiters share
+/// compiled code.
 inline constexpr int kLimiterRows = Guard<Level::kAcceleration, kDynamic>::kRows;
 using LimiterRows = Rows<kDynamic, kLimiterRows>;
 
-/// Limiter::motion() and Limiter::brake(). Compiled once, beside trackers.
+/// Limiter::motion() and Limiter::brake(). Compiled once, in the unit of the trackers.
 SaturatedMotion<kDynamic> limited_motion(const AnyLimiter& any, const Matrix<kDynamic, kDynamic>& J,
                                          const State<kDynamic>& state, const JointVector& desired,
                                          const JointVector& last, const LimiterRows& rows);

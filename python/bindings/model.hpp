@@ -11,7 +11,7 @@ namespace fpbm::bindings {
 inline constexpr int kDynamic = Eigen::Dynamic;
 using JointVector = Vector<kDynamic>;
 
-/// The joints and frames of a robot or an arm, for tasks, clearance and all else that reads a robot's state.
+/// The joints and frames of a robot or an arm, for all code that reads a robot's state, such as tasks and clearances.
 struct Model {
   explicit Model(const Tree<>& tree_, bool planar_ = false) : tree(tree_), robot(tree_), planar(planar_) {
     for (const auto& [joint, parent, moved] : tree.joints) {
@@ -22,13 +22,13 @@ struct Model {
 
   [[nodiscard]] int dof() const noexcept { return robot.dof(); }
   [[nodiscard]] const JointLimits<kDynamic>& limits() const noexcept { return robot.limits(); }
-  /// Link and offset of a frame: a named one, the link that the joint of that name moves, or 'base'.
-  /// Throws std::invalid_argument if there is none.
+  /// Link and offset of a frame: the frame of that name, the link that the joint of that name moves, or 'base'. Throws
+  /// std::invalid_argument if no frame has that name.
   [[nodiscard]] std::pair<int, Transform<>> frame(const std::string& name) const;
 
   Tree<> tree;
   Robot<kDynamic> robot;
-  bool planar;                           ///< Whether it is an arm in the plane.
+  bool planar;                           ///< Whether the model is a planar arm.
   std::vector<std::string> joint_names;  ///< Names of the drives.
 };
 

@@ -4,11 +4,11 @@
 
 namespace {
 
-/// A ParameterError becomes the package's own, a subclass of ValueError.
+/// Translates a ParameterError to the ParameterError of the package, a subclass of ValueError.
 void translate(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(thrown);
-  } catch (const fpbm::TooClose& error) {  // With the remedies as Python writes them.
+  } catch (const fpbm::TooClose& error) {  // The message has the remedies in the notation of Python.
     const py::object type = py::module_::import("fpbm_cpp.errors").attr("ParameterError");
     const std::string pair = py::repr(py::make_tuple(error.names().first, error.names().second));
     const std::string text =

@@ -24,36 +24,36 @@ struct TaskPath {
 /// Several tasks, some of which follow paths.
 struct StackOptions {
   StackPlan plan;
-  std::vector<TaskPath> paths;  ///< The first is the motion's, of which samples have tip, reference and error.
+  std::vector<TaskPath> paths;  ///< Samples have tip, reference and error of the first path.
   double duration;              ///< Duration of the longest path [s].
 };
 
-/// How a motion keeps limits; the length of its tick is the grid's.
+/// Limits of a motion and their options; the length of a tick is the step of the grid.
 struct LimitOptions {
   JointLimits<kDynamic> limits;
   TrackerOptions<> options;
   Clearance<kDynamic> clearance;
-  bool keeps_clear = false;                     ///< Whether it was given a clearance.
-  std::shared_ptr<const StackOptions> stack{};  ///< Null: the tip's task is the only one.
+  bool keeps_clear = false;                     ///< Whether a clearance was given.
+  std::shared_ptr<const StackOptions> stack{};  ///< Null if the tip's task is the only task.
 };
 
 /// One motion along a path.
 template <typename Space>
 struct Motion {
-  const AnyArmFor<Space>* arm;  ///< Null of a robot, which has a stack.
+  const AnyArmFor<Space>* arm;  ///< Null for a robot, which has a stack.
   const AnyPath<Space>& path;
   const Scheme& scheme;
   State<kDynamic> start;
   TimeGrid<double> grid;
 
-  /// rollout() of it. Throws std::invalid_argument if scheme or start do not fit the arm.
+  /// rollout() of the motion. Throws std::invalid_argument if scheme or start do not fit the arm.
   RolloutResult<kDynamic> simulate(const Output<Space>& output) const;
 
-  /// fpbm::track() of it. Throws std::invalid_argument if scheme, start, limits, options or clearance do
-  /// not fit.
+  /// fpbm::track() of the motion. Throws std::invalid_argument if scheme, start, limits, options or clearance do not
+  /// fit.
   RolloutResult<kDynamic> track(const LimitOptions& limit_options, const Output<Space>& output) const;
 
-  /// The tracker of it, for an arm of N joints. Throws as track() does.
+  /// The tracker of the motion, for an arm of N joints. Throws as track() does.
   template <int N>
   LaneTracker<Space, N> tracker(const LimitOptions& limit_options) const;
 

@@ -11,7 +11,7 @@
 
 namespace fpbm::bindings {
 
-/// The arrays of a motion by name, one row a sample.
+/// The arrays of a motion by name, one row per sample.
 using Arrays = py::typing::Dict<py::str, py::array>;
 
 /// Arrays for a motion of that many samples of n joints.
@@ -86,12 +86,12 @@ struct MotionArrays {
   }
 };
 
-/// How long a motion moves [s].
+/// Duration of the path, or of the longest path [s].
 inline double duration_of(const Path& path, const std::optional<LimitOptions>& limit_options) {
   return limit_options && limit_options->stack ? limit_options->stack->duration : path.duration();
 }
 
-/// How a motion keeps limits, of a LimitOptions of motion/simulation.py, or none.
+/// Limit options from a LimitOptions of motion/simulation.py, or none.
 std::optional<LimitOptions> limit_options_of(const py::object& given, const Model& model, const Path& path);
 
 }  // namespace fpbm::bindings

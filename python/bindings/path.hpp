@@ -7,7 +7,7 @@
 
 namespace fpbm::bindings {
 
-/// A path in the task space that it was made in.
+/// A path in the task space for which it was constructed.
 struct Path {
   std::variant<AnyPath<Position<2>>, AnyPath<PlanarPose>, AnyPath<Position<3>>, AnyPath<Pose>> any;
 
@@ -16,7 +16,7 @@ struct Path {
   }
 
   /// The path for a task in that space, as convert_path() makes it.
-  /// Throws std::invalid_argument if the task cannot follow it.
+  /// Throws std::invalid_argument if the task cannot follow the path.
   template <typename Space>
   [[nodiscard]] AnyPath<Space> as() const;
 };

@@ -9,7 +9,7 @@ namespace {
 
 constexpr const char* kKinds[] = {"position", "orientation", "pose", "axis", "center_of_mass", "posture"};
 constexpr const char* kRows[] = {"x", "y", "z", "rx", "ry", "rz"};
-/// The rows of an arm in the plane: x, y, rz.
+/// The rows of a planar arm: x, y, rz.
 constexpr AnyFrameTask::Selection kPlane = {true, true, false, false, false, true};
 
 template <typename Value>
@@ -78,7 +78,7 @@ AnyFrameTask frame_task(const py::handle& given, TaskKind kind, const Model& mod
                       reference);
 }
 
-/// The tasks of a level as they are put into an AnyStack.
+/// The tasks of a level in the places of an AnyStack.
 struct Places {
   std::array<AnyFrameTask, 2> frames;
   AnyPostureTask posture;
@@ -92,7 +92,8 @@ TaskGains<> gains_of(const py::handle& task, Level level) {
                                    : TaskGains<>(attribute<double>(task, "k1"), attribute<double>(task, "k2"));
 }
 
-/// Puts a task of level k into the places of that level for both levels of schemes.
+/// Puts a task of task level k into the places of this task level, for schemes at velocity level and at acceleration
+/// level.
 StackTask place(const py::handle& given, std::size_t k, const Model& model, Places& velocity, Places& acceleration) {
   const auto too_many = [&](const char* what) {
     const std::string argument = "stack.levels[" + std::to_string(k) + "]";

@@ -8,15 +8,15 @@
 
 namespace fpbm::bindings {
 
-/// Arrays for a motion, and the condition that ends it early; null is left out.
+/// Arrays for a motion, and the flag that ends the motion early. A null pointer means no array or no flag.
 template <typename Space>
 struct Output {
   MotionBuffers<Space, kDynamic> buffers = {};
-  double* scale = nullptr;      ///< Scale of each tick of a motion within limits,
-  bool* saturated = nullptr;    ///< and a row of joints.
+  double* scale = nullptr;      ///< Within limits: scale of each tick.
+  bool* saturated = nullptr;    ///< Within limits: which joints are on a bound, a row for each tick.
   double* clearance = nullptr;  ///< Distance of the nearest pair, written by the code that computes it.
-  double* scales = nullptr;     ///< For a stack: a row of levels,
-  double* errors = nullptr;     ///< and the errors of all tasks.
+  double* scales = nullptr;     ///< For a stack: scale of each level, a row for each tick.
+  double* errors = nullptr;     ///< For a stack: errors of all tasks, a row for each tick.
   MotionSummary<>* summary = nullptr;
   const std::atomic<bool>* stop = nullptr;
 };
@@ -25,7 +25,7 @@ struct Output {
 template <typename Space>
 class Recorder {
  public:
-  /// level: whether the samples have accelerations of their own.
+  /// level: at acceleration level, the samples have accelerations.
   Recorder(const Output<Space>& output, Level level) : output_(output), summary_(level) {}
 
   bool operator()(const Sample<Space, kDynamic>& sample) noexcept {
@@ -44,7 +44,7 @@ class Recorder {
     return (*this)(sample);
   }
 
-  /// Hands the summary over.
+  /// Writes the summary to the output.
   void finish() const noexcept {
     if (output_.summary != nullptr) *output_.summary = summary_.result();
   }

@@ -16,7 +16,7 @@ void require_xdd(const Scheme& scheme, const OptionalArray& xdd) {
   }
 }
 
-/// The result of made(Space), the scheme for these joints, in a state.
+/// Joint motion of the scheme made(Space) in a state.
 template <typename Space, typename Made>
 Array resolve(const Scheme& scheme, const Kinematics<Space, kDynamic>& kinematics, const State<kDynamic>& state,
               const ArrayLike& x, const ArrayLike& xd, const OptionalArray& xdd, const OptionalOut& out,
@@ -36,7 +36,7 @@ Array resolve(const Scheme& scheme, const Kinematics<Space, kDynamic>& kinematic
   return result;
 }
 
-/// Finite numbers of a shape for each of some states, or for all of them.
+/// Finite numbers of one shape: one value for each state, or one value for all states.
 class PerState {
  public:
   using Shape = std::vector<py::ssize_t>;
@@ -83,7 +83,7 @@ typename Space::template Point<double> point_at(const PerState& x, py::ssize_t s
   }
 }
 
-/// resolve() in many states, of which each that is given once holds for all.
+/// resolve() in many states. An argument with one value holds for all states.
 template <typename Space, typename Any>
 Array resolve_many(const Scheme& scheme, const Any& arm, const ArrayLike& q, const ArrayLike& qd, const ArrayLike& x,
                    const ArrayLike& xd, const OptionalArray& xdd, const OptionalOut& out) {

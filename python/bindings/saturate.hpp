@@ -17,7 +17,7 @@ struct Levels {
   std::vector<double> scale;
 };
 
-/// LevelSaturation of all of them. Compiled once, apart from pybind11.
+/// LevelSaturation of all levels. Compiled once, in a unit without pybind11.
 Levels saturate(const std::vector<LevelRows>& levels, const Box<kDynamic>& box, const JointVector& rest,
                 const JointVector& unit);
 

@@ -3,8 +3,8 @@
 namespace fpbm::bindings {
 namespace {
 
-/// Joints of the arms that have schemes of their own size: the paper's arm, a quarter faster, and arms with a pose and
-/// one self-motion, by half. 0 for none.
+/// Number of joints for which schemes have a fixed size; 0 for none. A fixed size makes the paper's arm a quarter
+/// faster, and arms with a pose and one redundant joint faster by half.
 template <typename Space>
 constexpr int kOwnSize = std::is_same_v<Space, Position<2>> ? 4
                          : std::is_same_v<Space, Pose>      ? 7

@@ -14,11 +14,11 @@
 
 namespace fpbm::bindings {
 
-/// A scheme of either level.
+/// A scheme at velocity level or at acceleration level.
 template <typename Space>
 using EitherScheme = std::variant<AnyScheme<Level::kVelocity, Space>, AnyScheme<Level::kAcceleration, Space>>;
 
-/// The parameters of a scheme, before the number of joints is known. Missing ones are neutral.
+/// The parameters of a scheme, before the number of joints is known. The default of a parameter has no effect.
 struct Scheme {
   using Diagonal = Vector<kDynamic>;
   using Dense = Matrix<kDynamic, kDynamic>;
@@ -37,8 +37,8 @@ struct Scheme {
   double manipulability_gain = 0.0;
   SingularDamping<> singular = SingularDamping<>::off();
 
-  /// The scheme for an arm, objectives and all.
-  /// Throws std::invalid_argument if a parameter is out of range or does not fit the arm.
+  /// The scheme for an arm, with all objectives. Throws std::invalid_argument if a parameter is out of range or does
+  /// not fit the arm.
   template <typename Space>
   [[nodiscard]] EitherScheme<Space> make(const AnyArmFor<Space>& arm) const;
 
@@ -47,7 +47,7 @@ struct Scheme {
   template <typename Space>
   [[nodiscard]] EitherScheme<Space> make_without_arm(Eigen::Index dof) const;
 
-  /// The same, made once: one call of resolve() takes less time than making a scheme.
+  /// The result of make_without_arm(), made once, because the construction takes longer than a call of resolve().
   template <typename Space>
   [[nodiscard]] const EitherScheme<Space>& kept(Eigen::Index dof) const {
     auto& [joints, scheme] = std::get<Kept<Space>>(kept_);  // The caller holds Python's lock.
@@ -58,17 +58,17 @@ struct Scheme {
     return *scheme;
   }
 
-  /// Whether all of it is in law(): no objective wraps it.
+  /// Whether law() is the whole scheme, so that no objective wraps the law.
   [[nodiscard]] bool is_plain() const noexcept { return manipulability_gain == 0.0; }
 
   /// Whether an objective reads the arm or its limits.
   [[nodiscard]] bool needs_arm() const noexcept { return !is_plain() || joint_centring != 0.0; }
 
-  /// The scheme without the objectives that wrap it, for joints of these limits. Compiled once, in scheme.cpp.
+  /// The scheme without objectives that wrap the law, for joints with these limits. Compiled once, in scheme.cpp.
   template <typename Space>
   [[nodiscard]] EitherScheme<Space> plain(const JointLimits<kDynamic>& limits) const;
 
-  /// The same, as the library's own type with given weights.
+  /// The result of plain() as a type of the library, with given weights.
   template <Level kLevel, int N, typename Weights>
   [[nodiscard]] auto law(const Weights& W, const JointLimits<N>& limits) const {
     if constexpr (kLevel == Level::kVelocity) {
@@ -78,8 +78,8 @@ struct Scheme {
     }
   }
 
-  /// The weights as a diagonal of dof entries, which are 1 unless given. Throws std::invalid_argument if they are of
-  /// another number. W must not be dense.
+  /// The weights as a diagonal of dof entries, which are 1 by default. Throws std::invalid_argument if the number of
+  /// weights is not dof. W must not be dense.
   template <int N>
   [[nodiscard]] DiagonalWeights<N> diagonal_weights(Eigen::Index dof) const {
     const auto* w = std::get_if<Diagonal>(&weights);
@@ -88,7 +88,7 @@ struct Scheme {
     return DiagonalWeights<N>(Vector<N>(*w));
   }
 
-  /// The secondary motion z of joints of these limits.
+  /// The secondary motion z of joints with these limits.
   template <int N>
   [[nodiscard]] NullSpace<N> null_space(const JointLimits<N>& limits) const {
     const Eigen::Index dof = limits.lower.size();
@@ -117,10 +117,10 @@ struct Scheme {
   mutable std::tuple<Kept<Position<2>>, Kept<PlanarPose>, Kept<Position<3>>, Kept<Pose>> kept_ = {};
 };
 
-/// The weights of a scheme, behind one type. Throws std::invalid_argument if they are for another number of joints.
+/// The weights of a scheme as one type. Throws std::invalid_argument if the number of weights is not dof.
 AnyWeights any_weights(const Scheme& scheme, Eigen::Index dof);
 
-/// The parameters that are numbers, and 0 where they are not given.
+/// The parameters that are numbers; the default is 0.
 inline constexpr std::pair<const char*, double Scheme::*> kSchemeNumbers[] = {
     {"alpha", &Scheme::alpha},
     {"k", &Scheme::k},

@@ -15,7 +15,7 @@
 
 namespace fpbm::bindings {
 
-/// By the names of tasks: the reference and the point of each task.
+/// Reference and point of each task, by the name of the task.
 using PyReferences = py::typing::Dict<py::str, py::object>;
 using PyPoints = py::typing::Dict<py::str, Array>;
 
@@ -29,17 +29,18 @@ class StackLoop {
   using Result = StackMotion::Result;
   using Parts = std::vector<std::pair<std::string, int>>;
 
-  /// stack: an fpbm_cpp.Stack. Throws std::invalid_argument if a task does not suit the arm, and as fpbm::Tracker.
+  /// stack: an fpbm_cpp.Stack. Throws std::invalid_argument if a task does not fit the arm, and as fpbm::Tracker.
   StackLoop(const py::object& stack, const Scheme& scheme, const Model& model, const State<kDynamic>& start,
             const TrackerOptions<>& options, const JointLimits<kDynamic>& limits, const JointVector& qdd0,
             const Clearance<kDynamic>& clearance);
 
   /// One tick toward references: a dictionary of arguments of Tracker.tick(), by the names of the tasks. A task that is
-  /// not in it keeps its last target, at rest. Throws std::invalid_argument, before the tick, on a bad reference.
+  /// not in the dictionary keeps its last target, at rest. If a reference is invalid, throws std::invalid_argument
+  /// before the tick.
   [[nodiscard]] Result tick(const PyReferences& references);
   [[nodiscard]] Result resolve_measured(const State<kDynamic>& measured, const PyReferences& references);
 
-  /// A path laid out from where a task is now. task: its name, or none of the only one that follows paths.
+  /// A path from the present point of a task. task: name of the task; none if only one task can follow a path.
   [[nodiscard]] PyFollower follow(const Path& path, double ramp, const std::optional<std::string>& task) const;
 
   /// Throws std::invalid_argument unless the level exists and is below the first.
@@ -51,19 +52,19 @@ class StackLoop {
   void resume() noexcept { motion_.resume(); }
 
   [[nodiscard]] StackTracker& tracker() const noexcept { return motion_.tracker(); }
-  /// Where each task is, as references have it, by name.
+  /// The present point of each task, by name, in the shape of references.
   [[nodiscard]] PyPoints points() const;
-  /// The frame of a task, shape (4, 4); of an axis, its z axis is that.
+  /// The frame of a task, shape (4, 4); for an axis task, z is the axis.
   [[nodiscard]] Array frame(const std::string& task) const;
 
   [[nodiscard]] Eigen::VectorXd scales(const Result& tick) const;
   /// The errors of the tasks one after another.
   [[nodiscard]] Eigen::VectorXd error(const Result& tick) const;
-  /// Name and number of entries of each.
+  /// Name and number of entries of the error of each task.
   [[nodiscard]] const std::shared_ptr<const Parts>& parts() const noexcept { return parts_; }
 
  private:
-  /// The sources of references that have some; the other tasks get their targets.
+  /// The paths and filters among the references. Sets the targets of all other tasks.
   [[nodiscard]] StackMotion::Sources read(const PyReferences& references);
   [[nodiscard]] std::optional<StackMotion::Source> source_of(const StackTask& task, const py::handle& given) const;
 

@@ -11,12 +11,12 @@
 
 namespace fpbm::bindings {
 
-/// A tracker of a stack, and the reference that each task had last.
+/// A tracker of a stack, and the last reference of each task.
 class StackMotion {
  public:
   using Space = StackTracker::Space;
   using Result = StackTracker::Result;
-  /// The reference of a task in a tick: a path or a filter, which have their own references.
+  /// Source of the reference of a task in a tick: a path or a filter.
   using Source =
       std::variant<AnyFollower<Position<3>>*, AnyFollower<Pose>*, TargetFilter<Position<3>>*, TargetFilter<Pose>*>;
   using Sources = std::vector<std::pair<const StackTask*, Source>>;
@@ -27,14 +27,16 @@ class StackMotion {
               const TrackerOptions<>& options, const JointLimits<kDynamic>& limits, const JointVector& qdd0,
               const Clearance<kDynamic>& clearance);
 
-  /// Gives tasks their targets; the others keep theirs, at rest.
+  /// Sets the targets of these tasks; all other tasks keep their last target, at rest.
   void aim(const Targets& targets) noexcept;
-  /// One tick: tasks with a source follow it, the others have their targets. The clocks of the sources advance.
+  /// One tick: a task with a source follows the source; all other tasks follow their targets. The clocks of the sources
+  /// advance.
   [[nodiscard]] Result tick(const Sources& sources) noexcept;
   /// Throws std::invalid_argument if the scheme is of velocity level.
   [[nodiscard]] Result resolve_measured(const State<kDynamic>& measured, const Sources& sources);
 
-  /// The new level k is the old level order[k], with its targets. False, without an effect, as Stack::reorder().
+  /// The new level k is the old level order[k], with its targets. Returns false, without an effect, if Stack::reorder()
+  /// does.
   bool reorder(const std::array<int, AnyStack::kLevels>& order) noexcept;
 
   void stop() noexcept;
@@ -42,7 +44,7 @@ class StackMotion {
 
   [[nodiscard]] const StackPlan& plan() const noexcept { return plan_; }
   [[nodiscard]] StackTracker& tracker() const noexcept { return *tracker_; }
-  /// Where the frame of a task is; of an axis, its z axis is that.
+  /// The frame of a task; for an axis task, z is the axis.
   [[nodiscard]] Transform<> frame_of(const StackTask& task) const noexcept;
   /// Positions of the joints of a posture.
   [[nodiscard]] JointVector posture_of(const StackTask& task) const noexcept;

@@ -18,14 +18,15 @@ struct StackTask {
   std::string name;
   TaskKind kind;
   int index;  ///< Index among AnyStack's tasks.
-  int size;   ///< Rows of its point's displacements.
+  int size;   ///< Rows of a displacement of the task's point.
   std::vector<int> joints;
 
-  /// First row within the rows of its place in an AnyStack: angles alone come after lengths.
+  /// First row within the rows of the task's place in an AnyStack: the rows of angles follow three rows of lengths.
   [[nodiscard]] int shift() const noexcept { return kind == TaskKind::kOrientation || kind == TaskKind::kAxis ? 3 : 0; }
   [[nodiscard]] bool follows_paths() const noexcept { return kind == TaskKind::kPosition || kind == TaskKind::kPose; }
 
-  /// f(space, i, row) for its place in an AnyStack, as AnyStack::Space::each() calls it. f must not throw.
+  /// Calls f(space, i, row) for the place of the task in an AnyStack, as AnyStack::Space::each() does. f must not
+  /// throw.
   template <typename F>
   void at_place(F&& f) const noexcept {
     AnyStack::Space::each([&](auto space, auto i, int row) noexcept {
@@ -42,7 +43,7 @@ struct StackTarget {
   Vector<kDynamic> xdd;
 };
 
-/// A Stack of Python for a robot.
+/// An fpbm_cpp.Stack for a robot.
 struct StackPlan {
   Tree<> tree;
   std::vector<StackTask> tasks;
@@ -63,8 +64,8 @@ struct StackPlan {
     }
     validation::reject("task", " = '" + name + "': must be a task of the stack: " + known);
   }
-  /// The task that follows a path: the task of the name, or the only position or pose.
-  /// Throws std::invalid_argument if there is none.
+  /// The task that follows a path: the task of the name, or the only position or pose. Throws std::invalid_argument if
+  /// no task fits.
   [[nodiscard]] const StackTask& follower(const std::optional<std::string>& name) const {
     if (name) {
       const StackTask& named = task(*name);

@@ -11,7 +11,7 @@
 
 namespace fpbm::bindings {
 
-/// fpbm::stack_tracker() of any robot and tasks, under any scheme of either level, clear of shapes.
+/// fpbm::stack_tracker() for any robot, tasks, scheme and clearance.
 class StackTracker {
  public:
   using Space = AnyStack::Space;

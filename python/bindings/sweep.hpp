@@ -12,8 +12,7 @@
 
 namespace fpbm::bindings {
 
-/// One motion of a sweep: under which scheme, from where at rest, and where to write it if the whole motion is
-/// recorded.
+/// One motion of a sweep: its scheme, its start at rest, and the arrays for the whole motion if it is recorded.
 template <typename Space>
 struct Job {
   const Scheme* scheme;
@@ -30,7 +29,7 @@ class Runner {
 
   [[nodiscard]] bool stopped() const noexcept { return stop_.load(std::memory_order_relaxed); }
 
-  /// One motion by itself.
+  /// Runs one motion without lanes.
   [[nodiscard]] Outcome alone(const Job<Space>& job, const LimitOptions* limit_options) const {
     const Outcome nothing = Outcome::of_nothing();
     MotionSummary<> summary = nothing.summary;
@@ -44,7 +43,8 @@ class Runner {
     return {static_cast<int>(result.status), result.samples, result.time, summary};
   }
 
-  /// The members of jobs, which are of one level, in groups of as many as there are lanes; the last is filled up.
+  /// Runs the jobs with the indices `members`, which have schemes of one level, in groups with one job per lane. The
+  /// last job fills the free lanes of the last group.
   void in_lanes(const std::vector<Job<Space>>& jobs, const std::vector<std::size_t>& members,
                 const LimitOptions* limit_options, std::size_t lanes, RunInLanes<Space> run, Outcome* outcomes) const {
     using Source = std::conditional_t<std::is_same_v<Space, Position<2>>, JointVector, Chain<>>;
@@ -58,7 +58,7 @@ class Runner {
       for (std::size_t lane = 0; lane < lanes; ++lane) {
         const Job<Space>& job = jobs[members[std::min(first + lane, last - 1)]];
         const Scheme& scheme = *job.scheme;
-        const auto damped = [&](auto law) {  // As its tracker is.
+        const auto damped = [&](auto law) {  // With the damping of the tracker.
           if (limit_options != nullptr) set_damping(law, limit_options->options.damping(kDof, Space::kRows));
           return law;
         };
@@ -92,7 +92,7 @@ class Runner {
 
 [[nodiscard]] inline bool runs_in_lanes(const Arm& arm) noexcept {
   if (const auto* chain = std::get_if<Chain<>>(&arm.source)) {
-    return arm.dof() == 7 && chain->joints.size() == 7;  // No joint follows another.
+    return arm.dof() == 7 && chain->joints.size() == 7;  // No joint is a mimic joint.
   }
   return arm.dof() == 4;
 }
@@ -114,10 +114,10 @@ template <typename Space>
   return members;
 }
 
-/// Runs each job on one arm along one path, as simulate() would or, where limit_options is not null, track(); and
-/// writes an outcome for each. Where code is not null, it runs motions of one task side by side, with results that do
-/// not depend on which. Once stop is set, which is looked at in every sample, all that are not done yet are not run.
-/// Throws std::invalid_argument if a scheme, a start or the limits do not fit the arm.
+/// Runs each job on one arm along one path, as simulate() or, if limit_options is not null, as track(). Writes an
+/// outcome for each job. If code is not null, motions of one task run side by side; the result of a motion does not
+/// depend on the motions in the other lanes. stop is read in every sample; if stop is set, unfinished motions are
+/// marked as not run. Throws std::invalid_argument if a scheme, a start or the limits do not fit the arm.
 template <typename Space>
 void sweep(const Arm& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid,
            const std::vector<Job<Space>>& jobs, const LimitOptions* limit_options, const LaneCode* code,

@@ -6,7 +6,7 @@
 
 namespace fpbm::bindings {
 
-/// A filter of targets of any task.
+/// A filter of targets in any task space.
 struct PyTargetFilter {
   std::variant<TargetFilter<Position<2>>, TargetFilter<PlanarPose>, TargetFilter<Position<3>>, TargetFilter<Pose>> any;
 };

@@ -67,7 +67,7 @@ Vector<Space::kRows> rows_of(const JointVector& error) noexcept {
   }
 }
 
-/// The paths of a stack, laid out from where their tasks are.
+/// The paths of a stack, each from the present frame of its task.
 class Followers {
  public:
   Followers(const StackMotion& tasks, const std::vector<TaskPath>& paths) {
@@ -82,7 +82,7 @@ class Followers {
     }
   }
 
-  /// As long as the followers are.
+  /// The sources are valid during the lifetime of the followers.
   [[nodiscard]] StackMotion::Sources sources(const StackPlan& plan, const std::vector<TaskPath>& paths) {
     StackMotion::Sources sources;
     for (std::size_t i = 0; i < paths.size(); ++i) {
@@ -90,7 +90,7 @@ class Followers {
     }
     return sources;
   }
-  /// Where the first path is.
+  /// The present reference of the first path.
   [[nodiscard]] Transform<> first() const noexcept {
     return std::visit([](const auto& one) { return transform_of(one.ahead(0.0).x); }, each_.front());
   }
@@ -99,8 +99,8 @@ class Followers {
   std::vector<std::variant<AnyFollower<Position<3>>, AnyFollower<Pose>>> each_;
 };
 
-/// fpbm::track() of a stack: the sample's tip, reference and error are those of the task that follows the first path,
-/// its J, for summaries, is the Jacobian of the arm's tip.
+/// fpbm::track() of a stack. Tip, reference and error of a sample are those of the task that follows the first path. J
+/// of a sample, for summaries, is the Jacobian of the arm's tip.
 template <typename Space>
 RolloutResult<kDynamic> track_stack(const Motion<Space>& motion, const LimitOptions& limit_options,
                                     const Output<Space>& output) {

@@ -8,8 +8,7 @@
 namespace fpbm::bindings {
 namespace {
 
-/// AnyTracker at one level. An empty clearance costs almost nothing, so that trackers without a guard need no code of
-/// their own.
+/// AnyTracker at one level. An empty clearance takes almost no time, so trackers without a guard need no separate code.
 template <Level kLevel, typename Space>
 class TrackerAt final : public AnyTracker<Space> {
  public:

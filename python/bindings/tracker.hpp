@@ -15,7 +15,7 @@ namespace fpbm::bindings {
 template <typename Space>
 using AnyFollower = PathFollower<AnyPath<Space>>;
 
-/// fpbm::Tracker of any arm for a task in Space, under any scheme of either level, clear of shapes.
+/// fpbm::Tracker of a task in Space, for any arm, scheme and clearance.
 template <typename Space>
 class AnyTracker {
  public:

@@ -285,7 +285,7 @@ class Scheme:
         out: numpy.typing.NDArray[numpy.float64] | None = None,
     ) -> numpy.typing.NDArray[numpy.float64]:
         """
-        The same for tip, J and Jd from another library, as a Kinematics.
+        Joint motion of the scheme for tip, J and Jd from another library, as a Kinematics.
         """
 
 class Shape:
@@ -369,7 +369,7 @@ class Limiter:
 
     A motion is unchanged if it keeps every bound over the next tick, and the joints can then stop within the bounds.
     Otherwise, other joints replace joints on their bounds in the null space of J. If this is not sufficient, the task is
-    scaled along its direction.
+    scaled without a change of direction.
 
     Parameters
     ----------
@@ -436,12 +436,12 @@ class SaturatedLevels:
 
 class TargetFilter:
     """
-    Computes a smooth reference from targets that come at any rate, late, twice or never.
+    Computes a smooth reference from targets that arrive at any rate, late, twice or never.
 
-    Each axis of the base frame moves to the target in minimum time within its bounds, in a frame that moves with the
-    target: without overshoot for a target at rest, without lag for a target with constant velocity. The velocity of the
-    target is estimated from the received points. A target without a message for the timeout stops. From rest, an
-    orientation rotates about one axis, with its largest angle in minimum time.
+    Along each axis of the base frame, the reference moves to the target in minimum time within the bounds, relative to the
+    moving target: without overshoot for a target at rest, without lag for a target with constant velocity. The velocity of
+    the target is estimated from the received points. If no message arrives within the timeout, the target stops. From rest,
+    an orientation rotates about a constant axis, and its largest angle changes in minimum time.
 
     Parameters
     ----------
@@ -458,8 +458,8 @@ class TargetFilter:
     timeout : float
         Time without a message after which a target stops and a twist ends [s].
     start : float, optional
-        Time of the first tick on the clock of the stamps [s]. Default: estimated, so that the least delayed stamp counts as
-        not delayed.
+        Time of the first tick on the clock of the stamps [s]. Default: estimated from the stamps; the least delayed stamp
+        counts as not delayed.
 
     Raises
     ------
@@ -634,8 +634,8 @@ class Tracker:
         Largest tip error that the feedback uses: of the position in arm lengths (from the first joint to the tip, along the
         links), of the orientation [rad].
     integral_gain, integral_bound : float
-        Gain of the integral of the error, [1/s^3] or [1/s^2] at velocity level, off by default, and largest contribution of
-        the integral [arm lengths and radians per s^2, or per s]. Stable below k1 k2.
+        Gain of the integral of the error, [1/s^3] or [1/s^2] at velocity level; 0: no integral. Largest contribution of the
+        integral [arm lengths and radians per s^2, or per s]. A gain below k1 k2 is stable.
     stall_time : float
         If an arm is slowed, or farther than error_bound from its target, and makes no progress for this time [s], the arm
         stops until the target moves, or until resume(). math.inf: the arm never stops for this reason.
@@ -711,7 +711,7 @@ class Tracker:
         """
     def move(self, name: str, shape: Shape, velocity: numpy.typing.ArrayLike = (0, 0, 0)) -> None:
         """
-        Moves an obstacle of the clearance to its present place; velocity [m/s] is its expected further motion.
+        Moves an obstacle of the clearance to its present place; velocity [m/s] is the expected velocity.
 
         shape must have the kind of the given obstacle; place and size may change. Raises ParameterError if no obstacle has
         that name, or if the shape has another kind.
@@ -727,7 +727,7 @@ class Tracker:
         self, q: numpy.typing.ArrayLike, qd: numpy.typing.ArrayLike, references: dict[str, typing.Any]
     ) -> Tick:
         """
-        The same for a stack.
+        The tick of a stack for a measured state; references as for tick.
         """
     @typing.overload
     def resolve_measured(
@@ -755,12 +755,12 @@ class Tracker:
     @typing.overload
     def tick(self, follower: PathFollower) -> Tick:
         """
-        One tick along a path, whose clock advances by one tick.
+        One tick along a path. The clock of the path advances by one tick.
         """
     @typing.overload
     def tick(self, filter: TargetFilter) -> Tick:
         """
-        One tick with a filter of targets, which advances by one tick, also after stop.
+        One tick toward the reference of a filter. The filter advances by one tick, also after stop.
         """
     @typing.overload
     def tick(self, references: dict[str, typing.Any]) -> Tick:
@@ -830,7 +830,7 @@ def dh(
 ) -> tuple[list[dict[str, typing.Any]], numpy.typing.NDArray[numpy.float64]]: ...
 def failed(status: Status) -> bool:
     """
-    Whether there is no result.
+    Whether the status means that there is no result.
     """
 
 def in_plane(path: Path, axes: numpy.typing.ArrayLike) -> Path: ...
@@ -904,7 +904,8 @@ def saturate(
         u_k = u_{k-1} + s_k (d - u_{k-1}) + Z_k g,    lower <= u_k <= upper,    0 <= s_k <= 1 as large as possible,
 
     where the columns of Z_k are a basis of the null space of J_1 ... J_k, and the null-space motion g replaces joints on
-    their bounds by others. A lower level never changes J u of a higher one. Each scale s_k is the optimum of a linear program.
+    their bounds by other joints. A lower level never changes J u of a higher level. Each scale s_k is the optimum of a
+    linear program.
 
     Parameters
     ----------
@@ -917,7 +918,7 @@ def saturate(
         Initial motion within the bounds, such as the braking motion of a control loop. Default: the motion nearest to zero.
     unit : array_like, shape (n,), optional
         Unit of each joint's motion: the norm that d and g minimise is measured in these units. Default: half the distance
-        between the bounds, but at least 1e-3 of the largest.
+        between the bounds, but at least 1e-3 of the largest unit.
 
     Raises
     ------
