@@ -35,7 +35,7 @@ class Argument {
   [[gnu::noinline]] Argument(std::string_view name) { append({name}); }
   Argument(std::string&& name) = delete;
 
-  /// Part of an argument, by name.
+  /// Name of a part of an argument.
   [[nodiscard, gnu::noinline]] friend Argument operator+(Argument argument, std::string_view part) {
     argument.append({part});
     return argument;
