@@ -20,7 +20,7 @@ struct FixedAxis {
 };
 
 /// Fixed axis of a rotation whose angular velocity w [rad/s] and acceleration wd [rad/s²] are parallel to the remaining
-/// rotation vector `left` [rad]. No value if they are not parallel, or if `left` is zero.
+/// rotation vector `left` [rad]. Returns no value if these vectors are not parallel, or if `left` is zero.
 template <typename Scalar>
 [[nodiscard]] std::optional<FixedAxis<Scalar>> fixed_axis(const Vector<3, Scalar>& left, const Vector<3, Scalar>& w,
                                                           const Vector<3, Scalar>& wd) noexcept {

@@ -164,7 +164,7 @@ class StampClock {
   Scalar age_{0};
   Scalar half_{0};               ///< Time in the current half of the window [s].
   Scalar least_{kNone};          ///< Smallest delay in this half [s].
-  Scalar least_before_{kNone};   ///< Smallest delay in the half before [s].
+  Scalar least_before_{kNone};   ///< Smallest delay in the previous half [s].
   int rejected_ = 0;             ///< Number of stamps in the run of rejected stamps.
   double first_rejected_ = 0.0;  ///< First stamp of the run [s].
   double last_rejected_ = 0.0;   ///< Last stamp of the run [s].

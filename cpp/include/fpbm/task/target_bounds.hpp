@@ -35,9 +35,9 @@ struct TargetBounds {
 template <typename Scalar = double>
 struct TargetFilterOptions {
   Scalar dt = Scalar(1e-3);  ///< Length of a tick [s]. Default: the tick of the Franka Control Interface.
-  /// Time without a message for which a target continues to move, and a twist is followed [s]. The default is a choice:
-  /// five lost messages in a row at 30 Hz have no effect. With a longer timeout, the stop after the last message is
-  /// later.
+  /// Without a message, a target continues to move, and a twist is followed, for this time [s]. The default is a
+  /// choice: five lost messages in a row at 30 Hz have no effect. With a longer timeout, the stop after the last
+  /// message is later.
   Scalar timeout = Scalar(0.2);
   std::optional<double> start;  ///< Time at the first tick on the clock of the stamps [s]; estimated if not given.
 

@@ -86,7 +86,7 @@ class TaskRows {
  public:
   TaskRows(LevelRows<M, N, Scalar>& level, int first) noexcept : level_(level), first_(first) {}
 
-  /// Sets columns j and, if it exists, j + 1 of row i.
+  /// Sets column j, and column j + 1 if it exists, of row i.
   void set(Eigen::Index i, Eigen::Index j, const Pair<Scalar>& J, const Pair<Scalar>& Jd) noexcept {
     set_two(level_.J, first_ + i, j, J);
     set_two(level_.Jd, first_ + i, j, Jd);
@@ -150,7 +150,7 @@ template <int N, typename Scalar>
   return TaskRowsOfPosture<N, Scalar>(level);
 }
 
-/// Entries j and, if it exists, j + 1 of a row of a matrix.
+/// Entry j, and entry j + 1 if it exists, of a row of a matrix. Otherwise, the second entry of the pair is zero.
 template <typename Whole, typename Scalar = typename Whole::Scalar>
 [[nodiscard]] Pair<Scalar> two_of_row(const Whole& matrix, Eigen::Index row, Eigen::Index j) noexcept {
   return {matrix.coeff(row, j), j + 1 < matrix.cols() ? matrix.coeff(row, j + 1) : Scalar(0)};
