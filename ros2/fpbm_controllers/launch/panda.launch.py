@@ -1,4 +1,4 @@
-"""A Panda of mock hardware under the target controller."""
+"""A Panda with mock hardware and the target controller."""
 
 from launch import LaunchDescription
 from launch.substitutions import Command, PathJoinSubstitution

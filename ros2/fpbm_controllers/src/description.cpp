@@ -83,11 +83,11 @@ fpbm::Tree<> tree_of(const std::string& robot_description, const std::string& ba
   }
   const auto to_base = joints_to(model, {"base_frame", base});
   fpbm::Tree<> tree;
-  std::vector<std::shared_ptr<const urdf::Joint>> moving;  // The tree's.
+  std::vector<std::shared_ptr<const urdf::Joint>> moving;  // The joints of the tree.
   for (const NamedLink& named : links) {
     const auto to_link = joints_to(model, named);
     auto [down, up] = std::mismatch(to_base.begin(), to_base.end(), to_link.begin(), to_link.end());
-    fpbm::Transform<> base_in_fork;  // The last link that is before both.
+    fpbm::Transform<> base_in_fork;  // The fork is the last link before both base and link.
     for (; down != to_base.end(); ++down) {
       if ((*down)->type != urdf::Joint::FIXED) {
         throw std::invalid_argument("base_frame: moves with joint '" + (*down)->name + "', which is not before " +
@@ -95,7 +95,7 @@ fpbm::Tree<> tree_of(const std::string& robot_description, const std::string& ba
       }
       base_in_fork = base_in_fork * origin_of(**down);
     }
-    fpbm::Transform<> place = inverse(base_in_fork);  // In the frame of the tree's link that carries the next joint.
+    fpbm::Transform<> place = inverse(base_in_fork);  // In the frame of the link that carries the next joint.
     int carrier = 0;
     for (; up != to_link.end(); ++up) {
       place = place * origin_of(**up);

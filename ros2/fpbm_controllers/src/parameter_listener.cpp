@@ -15,7 +15,7 @@ namespace {
 using rclcpp::ParameterValue;
 using Parameters = rclcpp::node_interfaces::NodeParametersInterface;
 
-/// An integer, or several, as numbers.
+/// An integer or an array of integers as floating-point numbers.
 [[nodiscard]] std::optional<ParameterValue> as_double(const ParameterValue& value) {
   if (value.get_type() == rclcpp::PARAMETER_INTEGER) {
     return ParameterValue(static_cast<double>(value.get<std::int64_t>()));
@@ -25,7 +25,7 @@ using Parameters = rclcpp::node_interfaces::NodeParametersInterface;
   return ParameterValue(std::vector<double>(integers.begin(), integers.end()));
 }
 
-/// Declares the parameter that a message names as a number, where an integer was given for it.
+/// Declares the parameter that an error message names as a number, if an integer was given.
 [[nodiscard]] bool declare_as_double(Parameters& parameters, const std::string& message) {
   rcl_interfaces::msg::ParameterDescriptor descriptor;
   descriptor.read_only = true;
@@ -38,7 +38,7 @@ using Parameters = rclcpp::node_interfaces::NodeParametersInterface;
   return false;
 }
 
-/// All given parameters must be declared by now, except the parameters of ROS.
+/// Throws if a given parameter is neither declared nor a parameter of ROS.
 void require_known(const Parameters& parameters) {
   constexpr std::array<const char*, 5> kOfRos{"type", "fallback_controllers", "node_options_args", "qos_overrides.",
                                               "async_parameters."};

@@ -31,7 +31,7 @@ struct Axis {
   return std::atan2(fpbm::cross(a.direction, b.direction).norm(), a.direction.dot(b.direction));
 }
 
-/// Distance of two axes, with a sign unless they are parallel to 0.1 rad [m].
+/// Distance of two axes [m], with a sign unless the axes are parallel to 0.1 rad.
 [[nodiscard]] double distance(const Axis& a, const Axis& b) {
   const Vector between = b.point - a.point;
   const Vector normal = fpbm::cross(a.direction, b.direction);

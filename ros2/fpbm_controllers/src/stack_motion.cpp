@@ -26,7 +26,7 @@ using Tracker = fpbm::Tracker<Tasks, Space, Scheme>;
 using Reference = fpbm::Reference<Space>;
 constexpr int kPerLevel = Stack::kTasks / Stack::kLevels;
 
-/// The places of tasks in a stack, whose first places of each level are those of frames.
+/// The places of tasks in a stack. The first places of each level are for tasks of frames.
 [[nodiscard]] std::vector<int> places_of(const std::vector<MotionTask>& tasks) {
   std::array<int, Stack::kLevels> counts{};
   std::vector<int> places;
@@ -135,7 +135,7 @@ class StackMotion final : public Motion {
     return Scheme(fpbm::Balanced<kDof>(scheme_.alpha, scheme_.weights, null_space_of(scheme_, start)));
   }
 
-  /// The references of all tasks some seconds into the coming tick; the references of empty places are held.
+  /// The references of all tasks at a time in the next tick [s]; the references of empty places are held.
   [[nodiscard]] Reference ahead(double seconds) const noexcept {
     Reference all = held_;
     for (std::size_t k = 0; k < places_.size(); ++k) {

@@ -28,7 +28,7 @@ namespace {
 }  // namespace
 
 CallbackReturn TargetController::on_init() {
-  manager_rate_ = get_update_rate();  // Until the controller is configured.
+  manager_rate_ = get_update_rate();  // The manager's rate, until the controller is configured.
   try {
     listener_ = listen_to_parameters(get_node());
     params_ = listener_->get_params();
@@ -47,7 +47,7 @@ InterfaceConfiguration TargetController::state_interface_configuration() const {
   return interfaces(params_.joints, params_.state_interfaces);
 }
 
-/// Constructs all objects that allocate, and makes all checks that may throw, except of the arm's position.
+/// Constructs all objects that allocate, and makes all checks that may throw, except the check of the arm's position.
 CallbackReturn TargetController::on_configure(const rclcpp_lifecycle::State&) {
   try {
     read_parameters();
@@ -81,12 +81,11 @@ CallbackReturn TargetController::on_error(const rclcpp_lifecycle::State&) {
   return CallbackReturn::SUCCESS;
 }
 
-/// All that is made here has a fixed size and is within the controller: the controller manager may call this in its
-/// loop.
+/// Constructs only objects of fixed size within the controller: the controller manager may call this in its loop.
 CallbackReturn TargetController::on_activate(const rclcpp_lifecycle::State&) {
   try {
     motion_->begin(start());
-  } catch (const std::exception& error) {  // A joint outside its limits, say.
+  } catch (const std::exception& error) {  // For example, a joint is outside its limits.
     RCLCPP_ERROR(get_node()->get_logger(), "%s", error.what());
     return CallbackReturn::FAILURE;
   }
@@ -97,8 +96,9 @@ CallbackReturn TargetController::on_activate(const rclcpp_lifecycle::State&) {
   return CallbackReturn::SUCCESS;
 }
 
-/// The last command of all joints, unless there is none or the arm does not follow it; else the measured positions. The
-/// command would jump to the measured positions by the lag and the steady-state error of the arm.
+/// The last command of all joints. If there is no command, or if the arm does not follow the command, the measured
+/// positions. A start from the measured positions makes the command jump by the lag and the steady-state error of the
+/// arm.
 TargetController::Joints TargetController::start() {
   const auto require = [&](bool good, std::size_t joint, const char* what) {
     if (!good) throw std::runtime_error("joint '" + params_.joints[joint] + "': " + what);
@@ -131,7 +131,7 @@ TargetController::Joints TargetController::start() {
   return q;
 }
 
-/// The arm stays where the last command put it. A joint that does not take its command keeps its last.
+/// The arm stays at the last command. A joint with a locked command interface keeps its previous command.
 CallbackReturn TargetController::on_deactivate(const rclcpp_lifecycle::State&) {
   topics_->exchange().report.set(Report{});
   const Joints& q = motion_->state().q;
@@ -142,12 +142,13 @@ CallbackReturn TargetController::on_deactivate(const rclcpp_lifecycle::State&) {
   return CallbackReturn::SUCCESS;
 }
 
-/// One tick a call, always of the length that the limits were made for: a late call makes the arm late, never fast.
+/// At most one tick per call, always with the length for which the limits were made: a late call delays the arm, and
+/// the arm never moves faster.
 ///
 /// An interface that another thread has locked is not an error: after an error, the controller manager would deactivate
-/// the controller in motion. The arm waits until all joints have taken a command. If the wait is too long, the arm
-/// restarts at rest at its last command, and stays. Where readings stay locked, the last falls behind the command, and
-/// the arm stops.
+/// the controller in motion. The arm waits until all joints have taken a command. If the wait is too long, the motion
+/// restarts at rest at the last command, and the arm stops. If readings stay locked, the last reading deviates more and
+/// more from the command, and the arm stops.
 return_type TargetController::update(const rclcpp::Time& time, const rclcpp::Duration& period) {
   if (!pace_.due(period.seconds())) {
     ++report_.early;
@@ -226,7 +227,7 @@ std::optional<std::size_t> TargetController::command(const Joints& q, const Join
   std::optional<std::size_t> locked;
   for (std::size_t k = 0; k < command_interfaces_.size(); ++k) {
     const std::size_t joint = k % dof;
-    const Joints& values = k < dof ? q : qd;  // Positions come first: read_parameters().
+    const Joints& values = k < dof ? q : qd;  // Positions are first: see read_parameters().
     if (!command_interfaces_[k].set_value(values(static_cast<Eigen::Index>(joint)))) locked = joint;
   }
   return locked;

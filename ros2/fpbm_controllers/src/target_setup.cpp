@@ -38,7 +38,7 @@ namespace {
   return vector;
 }
 
-/// Throws if the joints of the parameters are not the joints of the tree that have a drive.
+/// Throws if the joints of the parameters are not the joints of the tree with a drive.
 void require_joints(const std::vector<std::string>& given, const fpbm::Tree<>& tree) {
   std::vector<std::string> driven;
   std::string list;
@@ -55,7 +55,7 @@ void require_joints(const std::vector<std::string>& given, const fpbm::Tree<>& t
                               " in robot_description between base_frame and the frames: give [" + list + "]");
 }
 
-/// Whether no joint of a tree is carried by a link: an arm ends there.
+/// Whether a link is the end of an arm, because the link carries no joint of the tree.
 [[nodiscard]] bool is_end(const fpbm::Tree<>& tree, int link) {
   return link > 0 &&
          std::none_of(tree.joints.begin(), tree.joints.end(), [link](const auto& each) { return each.parent == link; });
@@ -90,7 +90,7 @@ void TargetController::read_parameters() {
 
   fpbm::TrackerOptions<> options;
   options.dt = dt_;
-  options.null_damping = 0.0;  // scheme.null_damping alone decides.
+  options.null_damping = 0.0;  // Only scheme.null_damping applies.
   // A recovery moves all joints, also joints of tasks that are at their targets, and breaks a grasp.
   options.recovery = tasks_.size() == 1;
   const bool several = std::any_of(tasks_.begin(), tasks_.end(), [](const auto& task) { return task.level > 0; });
@@ -157,7 +157,7 @@ MotionScheme TargetController::scheme(Eigen::Index dof) const {
   return scheme;
 }
 
-/// The controller manager calls a controller in every n-th of the manager's ticks.
+/// The controller manager calls a controller in every n-th tick of the manager.
 void TargetController::require_rate() const {
   if (is_async())
     throw std::invalid_argument("is_async: must be false, since a write could mix the commands of two ticks");
@@ -194,7 +194,7 @@ TargetController::JointLimits TargetController::limits(const fpbm::Tree<>& tree)
   const auto& given = params_.limits;
   SourcedLimits result(robot_->limits(), "robot_description");
 
-#if __has_include(<controller_interface/controller_interface_params.hpp>)  // From ros2_control 4.38.
+#if __has_include(<controller_interface/controller_interface_params.hpp>)  // Available from ros2_control 4.38 on.
   JointLimits controlled = JointLimits::none(dof);
   for (Eigen::Index i = 0; i < dof; ++i) {
     const auto found = get_hard_joint_limits().find(params_.joints[static_cast<std::size_t>(i)]);

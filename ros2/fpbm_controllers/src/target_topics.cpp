@@ -85,8 +85,8 @@ TargetTopics::TargetTopics(rclcpp_lifecycle::LifecycleNode& node, const target_c
                                               });
 }
 
-/// Best effort, since a subscription with reliable messages receives no messages of a sensor; only the newest message
-/// is kept.
+/// Best effort, because a reliable subscription receives no messages of a best-effort publisher, such as a sensor. Only
+/// the newest message is kept.
 template <typename Message>
 std::shared_ptr<rclcpp::Subscription<Message>> TargetTopics::listen(rclcpp_lifecycle::LifecycleNode& node,
                                                                     const std::string& topic, std::size_t task) const {

@@ -64,7 +64,7 @@ class TargetController : public ::testing::Test {
     manager_.set_parameter({"targets.params_file", std::string(TEST_FOLDER) + "/" + parameters});
     return manager_.load_controller("targets", "fpbm_controllers/TargetController") != nullptr;
   }
-  /// The manager switches in its loop, which runs here.
+  /// The manager switches controllers in its loop, which this function runs.
   return_type change(const std::vector<std::string>& activate, const std::vector<std::string>& deactivate) {
     auto done = std::async(std::launch::async, [&] {
       return manager_.switch_controller(activate, deactivate,

@@ -14,19 +14,18 @@ struct NamedLink {
   std::string link;
 };
 
-/// The joints of a robot_description (URDF) from link base to some links, with their bounds on position and velocity,
-/// and a frame for each of the links. First come the joints from base to the first link, then the further ones to the
-/// second link, and so on.
-///
-/// Throws std::invalid_argument, which names the parameter, if the text or a link is missing, link base moves with a
-/// joint that is not between it and a link, or a joint between them is of a type that no tree has.
+/// The joints of a robot_description (URDF) from link base to each of `links`, with their bounds on position and
+/// velocity, and a frame for each of `links`. The order is: the joints from base to the first link, the further joints
+/// to the second link, and so on.
+/// Throws std::invalid_argument, which names the parameter, if the text or a link is missing, if link base moves with a
+/// joint that is not between base and a link, or if fpbm::Tree does not have the type of a joint.
 [[nodiscard]] fpbm::Tree<> tree_of(const std::string& robot_description, const std::string& base,
                                    const std::vector<NamedLink>& links);
 
 /// The joints of a tree from its base to a link.
 [[nodiscard]] std::vector<std::size_t> joints_to(const fpbm::Tree<>& tree, int link);
 
-/// The same as a chain whose tip is the link. Joints that follow another keep its number in the tree.
+/// The joints of joints_to() as a chain with the link as tip. A mimic joint keeps the number of the leader in the tree.
 [[nodiscard]] fpbm::Chain<> chain_to(const fpbm::Tree<>& tree, int link);
 
 /// Throws std::invalid_argument, which names the joint and the difference, if a preset is not the described arm:

@@ -20,7 +20,7 @@ namespace fpbm_controllers {
 /// The pose of a frame, in the base frame or relative to another frame.
 struct MotionTask {
   std::string gains_of;  ///< Prefix of the names of the gains in messages.
-  int level;             ///< From 0.
+  int level;             ///< Task level, counted from 0.
   fpbm::TaskGains<> gains;
   fpbm::LinkFrame<> frame;
   std::optional<fpbm::LinkFrame<>> reference;
@@ -34,7 +34,7 @@ struct MotionScheme {
   Joints weights;
   double null_damping;                 ///< [1/s]
   double rest_stiffness;               ///< [1/s²]
-  std::optional<Joints> rest_posture;  ///< None: the posture of begin() [rad].
+  std::optional<Joints> rest_posture;  ///< Default: the posture of begin() [rad].
 };
 
 /// The null-space motion from the posture of begin().
@@ -71,29 +71,29 @@ class Motion {
 
   /// Starts at rest from a posture. Throws std::invalid_argument if the posture is beyond a limit.
   virtual void begin(const Joints& q) = 0;
-  /// A new target of a task. False if its stamp rejects it.
+  /// Sets a new target of a task. Returns false if the target is rejected because of its stamp.
   virtual bool push(std::size_t task, const Target& target) noexcept = 0;
   /// One tick: sets the status, and the scale and the errors of each task.
   virtual void tick(Report& report) noexcept = 0;
   /// Brings the robot to rest until begin().
   virtual void stop() noexcept = 0;
 
-  /// The commands.
+  /// Joint commands.
   [[nodiscard]] virtual const fpbm::State<Eigen::Dynamic>& state() const noexcept = 0;
-  /// Sets where each task is in the commanded posture.
+  /// Sets the frame of each task in the commanded posture.
   virtual void locate(Report& report) const noexcept = 0;
 };
 
-/// Motion of one tip by a tracker of a pose, in less than half of the time of a stack; also for robots of fewer than
-/// six joints. settings: with one task, without a reference frame. Throws std::invalid_argument if a gain is too high
-/// for the tick.
+/// Motion of one tip by a tracker of a pose, in less than half of the time of a stack; also for robots with fewer than
+/// six joints. settings must have one task without a reference frame. Throws std::invalid_argument if a gain is too
+/// high for the tick.
 [[nodiscard]] std::unique_ptr<Motion> make_tip_motion(const MotionSettings& settings);
 
-/// Motion of any tasks by a tracker of a stack. Throws std::invalid_argument if a gain is too high for the tick, or a
-/// task does not suit the robot.
+/// Motion of any tasks by a tracker of a stack. Throws std::invalid_argument if a gain is too high for the tick, or if
+/// a task does not fit the robot.
 [[nodiscard]] std::unique_ptr<Motion> make_stack_motion(const MotionSettings& settings);
 
-/// Hands a target to the filter of a task. False if its stamp rejects the target.
+/// Passes a target to the filter of a task. Returns false if the target is rejected because of its stamp.
 template <typename Filter>
 bool push_to(Filter& filter, const Target& target) noexcept {
   const auto push = [&](auto... stamp) noexcept {

@@ -4,14 +4,14 @@
 
 namespace fpbm_controllers {
 
-/// Which calls of a loop are ticks: all, unless they come so soon that the ticks would be ahead of the loop's clock by
-/// more than one. Ticks of a fixed length are then late where calls are late, and never fast.
+/// Decides which calls of a loop are ticks of a fixed length. A call is not a tick if the ticks would be ahead of the
+/// clock of the loop by more than one tick. If calls are late, the ticks are late, but never faster than the clock.
 class Pace {
  public:
   /// dt: length of a tick [s].
   explicit Pace(double dt = 1.0) noexcept : dt_(dt) {}
 
-  /// Whether a call some seconds after the last is a tick.
+  /// Whether a call is a tick. period: time since the last call [s].
   [[nodiscard]] bool due(double period) noexcept {
     ahead_ = std::max(ahead_ - period, 0.0);
     if (!(ahead_ < dt_)) return false;

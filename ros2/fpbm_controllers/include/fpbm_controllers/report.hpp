@@ -18,21 +18,21 @@ enum class Fault : std::uint8_t { kNone, kFollowing, kUnreadable, kLocked };
 /// Result of a tick for a task.
 struct TaskReport {
   double scale = 1.0;              ///< Task scale.
-  double position_error = 0.0;     ///< Error of its frame from the filter's reference [m],
-  double orientation_error = 0.0;  ///< and [rad].
-  std::uint64_t refused = 0;       ///< Targets whose stamps were not newer than those before.
-  fpbm::Transform<> at;            ///< Its frame, in the base frame or the reference frame.
+  double position_error = 0.0;     ///< Position error relative to the filter's reference [m].
+  double orientation_error = 0.0;  ///< Orientation error [rad].
+  std::uint64_t refused = 0;       ///< Rejected targets: their stamps were not newer than earlier stamps.
+  fpbm::Transform<> at;            ///< Frame of the task, in the base frame or the reference frame.
 };
 
-/// Result of a tick: numbers only, so that the loop allocates nothing for it.
+/// Result of a tick: numbers only, so that the loop allocates no memory for reports.
 struct Report {
-  static constexpr std::size_t kTasks = 8;  ///< At most.
+  static constexpr std::size_t kTasks = 8;  ///< Largest number of tasks.
 
   bool active = false;  ///< Whether there was a tick since the controller was activated.
   Fault fault = Fault::kNone;
   std::size_t fault_joint = 0;
   fpbm::Status status = fpbm::Status::kOk;
-  double following_error = 0.0;  ///< The largest joint's, or after a fault that at the fault [rad].
+  double following_error = 0.0;  ///< Largest of all joints; after a fault, the value at the fault [rad].
   std::uint64_t missed = 0;      ///< Ticks in which another thread had locked an interface.
   std::uint64_t early = 0;       ///< Calls that came too soon to be ticks.
   rclcpp::Time time = rclcpp::Time();
@@ -53,12 +53,12 @@ struct Report {
   return "";
 }
 
-/// How messages name a task; the only one has no name.
+/// Suffix of messages with the name of a task; empty for a single task, which has no name.
 [[nodiscard]] inline std::string of_task(const std::string& name) {
   return name.empty() ? "" : " of task '" + name + "'";
 }
 
-/// A report as a message; before: the report of the message before. tasks: their names.
+/// A report as a message. before: the report of the previous message. tasks: names of the tasks.
 [[nodiscard]] inline diagnostic_msgs::msg::DiagnosticStatus diagnostic_of(const Report& report, const Report& before,
                                                                           const std::vector<std::string>& joints,
                                                                           const std::vector<std::string>& tasks) {

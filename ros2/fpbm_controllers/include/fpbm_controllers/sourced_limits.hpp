@@ -22,7 +22,7 @@ class SourcedLimits {
 
   [[nodiscard]] const JointLimits& limits() const noexcept { return limits_; }
 
-  /// Takes over the bounds that are narrower, and bounds on velocity near the ends of ranges.
+  /// Applies the given bounds that are narrower, and bounds on velocity near the ends of ranges.
   void narrow(const JointLimits& given, const char* source) {
     const JointLimits by = given.complete();
     for (Eigen::Index i = 0; i < limits_.lower.size(); ++i) {

@@ -12,9 +12,9 @@ namespace fpbm_controllers {
 
 /// Target of a message, in the base frame: a pose or a twist.
 struct Target {
-  std::uint64_t count = 0;                          ///< How many targets came before and with it: none yet at 0.
-  double stamp = 0.0;                               ///< When it was seen [s]; 0: when it came.
-  bool moves = false;                               ///< Whether it is a twist.
+  std::uint64_t count = 0;                          ///< Number of targets up to this target; 0: no target yet.
+  double stamp = 0.0;                               ///< Time of the measurement [s]; 0: time of arrival.
+  bool moves = false;                               ///< Whether the target is a twist.
   fpbm::Transform<> pose;                           ///< [m]
   fpbm::Vector<6> twist = fpbm::Vector<6>::Zero();  ///< [m/s, rad/s]
 };

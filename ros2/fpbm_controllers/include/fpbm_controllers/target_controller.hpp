@@ -18,8 +18,8 @@
 
 namespace fpbm_controllers {
 
-/// Brings the tip, or the frames of several tasks, to poses, or moves them at twists, that come as messages at any
-/// rate, and keeps the joint limits at every tick.
+/// Moves the tip, or the frames of several tasks, to target poses or at target twists, and keeps the joint limits at
+/// every tick. The targets are messages that arrive at any rate.
 ///
 /// A tick continues from the last command, never from the measured posture, which is only compared with the command.
 class TargetController : public controller_interface::ControllerInterface {
@@ -42,13 +42,15 @@ class TargetController : public controller_interface::ControllerInterface {
 
   /// Throws std::invalid_argument if a parameter does not fit.
   void read_parameters();
-  /// Throws std::invalid_argument if the controller is not called once in a tick of its update rate.
+  /// Throws std::invalid_argument if the controller manager does not call the controller once per tick of the update
+  /// rate.
   void require_rate() const;
-  /// The described joints, with a frame for each task's frame and then one for each reference frame, and the tool.
+  /// The joints of robot_description, with the frames of each task: its frame and, if given, its reference frame. The
+  /// frame of a single tip contains the tool.
   [[nodiscard]] fpbm::Tree<> described() const;
   /// Whether there is one task, in the base frame.
   [[nodiscard]] bool is_tip() const noexcept { return tasks_.size() == 1 && tasks_[0].reference.empty(); }
-  /// The tasks with the frames of that tree.
+  /// The tasks with the frames of a tree from described().
   [[nodiscard]] std::vector<MotionTask> motion_tasks(const fpbm::Tree<>& tree) const;
   [[nodiscard]] MotionScheme scheme(Eigen::Index dof) const;
   /// The narrowest limits of the robot, ros2_control, the preset and the parameters; the limits are logged.
@@ -64,12 +66,12 @@ class TargetController : public controller_interface::ControllerInterface {
   /// Reads the joints' positions: the first joint that cannot be read keeps its last reading, and its number is
   /// returned.
   [[nodiscard]] std::optional<std::size_t> measure();
-  /// Difference of two positions of joint i; of its angles, where it turns without end: drivers wrap them.
+  /// Difference of two positions of joint i; for a continuous joint, difference of angles, because drivers wrap angles.
   [[nodiscard]] double difference(Eigen::Index i, double a, double b) const noexcept;
-  /// Stops the arm where it does not follow.
+  /// Stops the arm if the following error of a joint is too large.
   void compare();
   void stop(Fault fault, std::size_t joint) noexcept;
-  /// The first joint that does not take its command.
+  /// Writes the commands. Returns a joint whose command interface is locked.
   [[nodiscard]] std::optional<std::size_t> command(const Joints& q, const Joints& qd);
 
   static constexpr int kLongestLock = 5;  ///< Ticks that the arm waits for a locked interface before it stops.
@@ -83,11 +85,11 @@ class TargetController : public controller_interface::ControllerInterface {
   std::optional<fpbm::Limits<fpbm::Level::kAcceleration, kDof>> limits_;
   std::optional<TargetTopics> topics_;
 
-  // Only for an active controller, and only for its loop.
+  // Used only by the loop of an active controller.
   std::unique_ptr<Motion> motion_;
   Pace pace_;
-  std::array<std::uint64_t, Report::kTasks> seen_{};  ///< The count of each task's newest target.
-  int locked_for_ = 0;                                ///< Ticks since the last that all joints took.
+  std::array<std::uint64_t, Report::kTasks> seen_{};  ///< Target::count of each task's newest target.
+  int locked_for_ = 0;                                ///< Ticks since all joints have taken a command.
   Joints measured_;
   Report report_;
 };

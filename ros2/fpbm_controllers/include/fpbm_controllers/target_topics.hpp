@@ -17,7 +17,7 @@
 
 namespace fpbm_controllers {
 
-/// The targets of a task, which the callbacks hand to the loop.
+/// The targets of a task, which the callbacks pass to the loop.
 struct TargetExchange {
   realtime_tools::RealtimeThreadSafeBox<Target> target;
 
@@ -26,23 +26,23 @@ struct TargetExchange {
   std::uint64_t received = 0;
 };
 
-/// Data that the loop and the node's callbacks exchange. The loop never waits for it. Each callback shares its
-/// ownership, since the topics may close while a callback runs.
+/// Data that the loop and the node's callbacks exchange. The loop never waits for a callback. Each callback shares the
+/// ownership of the data, because the topics may close while a callback runs.
 struct Exchange {
   explicit Exchange(std::size_t count) : tasks(count) {}
 
   std::vector<TargetExchange> tasks;
   realtime_tools::RealtimeThreadSafeBox<Report> report;
 
-  // Only for the callbacks.
+  // Used only by the callbacks.
   std::string arm;
   std::vector<std::string> joints;
   std::vector<std::string> names;  ///< Names of the tasks.
-  Report logged;                   ///< The last report whose events were logged,
-  Report diagnosed;                ///< and the last that was published.
+  Report logged;                   ///< The last report whose events were logged.
+  Report diagnosed;                ///< The last published report.
 };
 
-/// The controller's topics: three of each task, and the diagnostics. They close when it is destroyed.
+/// The controller's topics: three for each task, and the diagnostics. The destructor closes the topics.
 class TargetTopics {
  public:
   TargetTopics(rclcpp_lifecycle::LifecycleNode& node, const target_controller::Params& params,

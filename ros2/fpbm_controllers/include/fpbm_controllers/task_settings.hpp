@@ -6,16 +6,16 @@
 
 namespace fpbm_controllers {
 
-/// A task as the parameters say: the pose of a link, in the base frame or relative to another link.
+/// A task from the parameters: the pose of a link, in the base frame or relative to another link.
 struct TaskSettings {
   std::string name;       ///< Empty: the only task, which has no name.
-  std::string frame;      ///< Link.
-  std::string reference;  ///< Link; empty: the base frame.
+  std::string frame;      ///< Link that the task moves.
+  std::string reference;  ///< Link in whose frame poses are given; empty: the base frame.
   int level = 0;          ///< From 0, the highest priority.
   double k1 = 0.0;        ///< [1/s]
   double k2 = 0.0;        ///< [1/s²]
 
-  /// The parameter that names its frame.
+  /// The parameter that names the frame of the task.
   [[nodiscard]] std::string frame_parameter() const { return name.empty() ? "tip_frame" : parameter("frame"); }
   [[nodiscard]] std::string parameter(const char* own) const { return "task." + name + "." + own; }
   [[nodiscard]] std::string topic(const char* own) const { return (name.empty() ? "~/" : "~/" + name + "/") + own; }
