@@ -149,9 +149,8 @@ template <typename Bounds>
 
 namespace arms {
 
-/// Arm of Universal Robots; all models have the same structure. a, d: Denavit-Hartenberg parameters, a of the two long
-/// links and d of joints 1, 4, 5 and 6 [m]. speeds: bounds of the two shoulder joints and of the four other joints
-/// [deg/s].
+/// Arm of Universal Robots; all models have the same structure. DH parameters: a of the two long links, d of joints 1,
+/// 4, 5 and 6 [m]. speeds: bounds of the two shoulder joints and of the four other joints [deg/s].
 [[nodiscard]] inline Chain<> universal_robot(const std::vector<double>& a, const std::vector<double>& d,
                                              const std::vector<double>& speeds) {
   Chain<> chain = classic_dh<double>({
