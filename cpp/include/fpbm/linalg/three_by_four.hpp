@@ -15,8 +15,8 @@ inline constexpr auto kCertain = 4096 * std::numeric_limits<Number<Scalar>>::eps
 ///   ṽ = (s₂·c₃₄, −s₁·c₃₄, s₄·c₁₂, −s₃·c₁₂),   S ṽ = 0,   |ṽ|² = det SSᵀ,
 ///   S⁺a = D ṽ / |ṽ|²,   where D is skew-symmetric with the entries ± c_kl·a (combine).
 ///
-/// This is Cramer's rule for [S; ṽᵀ] y = [a; 0]. It needs one division, no pivoting and no square root. The condition
-/// number of S enters the round-off error once, and not squared as with SSᵀ.
+/// This is Cramer's rule for [S; ṽᵀ] y = [a; 0]. The rule needs one division, no pivoting and no square root. The
+/// condition number of S enters the round-off error once, and not squared as with SSᵀ.
 ///
 /// A Twice holds the values of two columns or minors: s12 is (s₁, s₂), c13_24 is (c₁₃, c₂₄), v34 is (ṽ₃, ṽ₄).
 template <typename Scalar>
