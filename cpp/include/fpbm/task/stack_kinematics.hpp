@@ -76,7 +76,7 @@ struct StackKinematics {
   Scalar length = Scalar(1);                  ///< Characteristic length of the robot [m].
 
   /// Set by continue_tick(), in the middle of a tick with one acceleration: 2 (e' − e)/h, twice the change of the
-  /// errors since the start of the tick divided by its length h [m/s, rad/s].
+  /// errors since the start of the tick, divided by the length h of the tick [m/s, rad/s].
   Vector<Stack_::Space::kRows, Scalar> error_rate;
   Scalar tick = Scalar(0);  ///< h [s], or 0 without continue_tick().
 
