@@ -17,9 +17,9 @@ namespace fpbm {
 ///   C⁻¹J u = C⁻¹r,   C Cᵀ = J Jᵀ + (ρ ‖J‖_F)² I,   C lower triangular.
 ///
 /// With ρ = 0, the rows C⁻¹J are orthonormal, and the singular values of C⁻¹J Z are the cosines of the principal angles
-/// between the row space of J and the null space: 1 if the higher levels leave a direction free, 0 if they determine
-/// the direction, for any unit of the rows. With ρ > 0, a direction in which J has the singular value σ has at most the
-/// value σ/√(σ² + ρ²‖J‖²_F), so that singular postures lose directions too.
+/// between the row space of J and the null space: 1 if the higher levels leave a direction free, 0 if the higher levels
+/// determine the direction, for any unit of the rows. With ρ > 0, a direction in which J has the singular value σ has
+/// at most the value σ/√(σ² + ρ²‖J‖²_F), so that singular postures lose directions too.
 template <int M, int N, typename Scalar>
 struct ScaledLevel {
   Matrix<M, N, Scalar> J;
