@@ -143,7 +143,7 @@ CallbackReturn TargetController::on_deactivate(const rclcpp_lifecycle::State&) {
 }
 
 /// At most one tick per call, always with the length for which the limits were made: a late call delays the arm, and
-/// the arm never moves faster.
+/// the arm is never faster.
 ///
 /// An interface that another thread has locked is not an error: after an error, the controller manager would deactivate
 /// the controller in motion. The arm waits until all joints have taken a command. If the wait is too long, the motion
