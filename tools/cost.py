@@ -1,10 +1,11 @@
-"""Runs a command, and prints the time and the memory that it takes, with the promised limits.
+"""Runs a command, and prints the time and the memory of the command, with the promised limits.
 
     cost.py [--seconds S] [--processor S] [--megabytes MB] [--largest MB] COMMAND ...
 
 --seconds is the time by the clock, --processor the processor time of all processes, and --megabytes the memory of all
-processes of the command together, measured five times a second (Linux only). They depend on the load of the machine and
-are only printed. --largest is the memory of the largest process: cost.py fails if it is above the promised limit.
+processes of the command together, measured five times a second (Linux only). These values depend on the load of the
+machine and are only printed. --largest is the memory of the largest process: if this memory is above the promised
+limit, cost.py fails.
 """
 
 import argparse
@@ -24,7 +25,7 @@ def memory(root: int) -> float:
             parent = int((entry / "stat").read_text().rpartition(")")[2].split()[1])
             held[int(entry.name)] = int((entry / "statm").read_text().split()[1]) * 4096 / 1e6
         except OSError:
-            continue  # It has ended meanwhile.
+            continue  # The process has ended meanwhile.
         children[parent].append(int(entry.name))
     total, left = 0.0, [root]
     while left:

@@ -7,12 +7,12 @@ from pathlib import Path
 
 ROOT = Path(__file__).parent.parent
 MADE = ("build/", "demo/", "dist/")  # Folders of results.
-USERS = {"my_arm.hpp", "my_robot.hpp", "main.cpp"}  # Files of a reader's own.
+USERS = {"my_arm.hpp", "my_robot.hpp", "main.cpp"}  # Files that a reader creates.
 CODE = re.compile(r"`([^`\n]+)`")
 FILE = re.compile(r"^(?:[\w.-]+/)*[\w.-]+\.(?:cpp|hpp|py|md|sh|json|yaml|toml|rst|txt)$")
 FOLDER = re.compile(r"^(?:[\w.-]+/)+$")
 LINK = re.compile(r"\]\(([^)#\s]+)[^)]*\)")
-TEST = re.compile(r"^([A-Z]\w+)\.([a-z]+(?:_\w+){2,})$")  # Tracker.resolve_measured is a method.
+TEST = re.compile(r"^([A-Z]\w+)\.([a-z]+(?:_\w+){2,})$")  # Tracker.resolve_measured is not a test.
 DECLARED = re.compile(r"^(?:TYPED_)?TEST(?:_[FP])?\((\w+),\s*(\w+)\)", re.MULTILINE)
 
 
@@ -32,7 +32,7 @@ def main() -> int:
     )
 
     def missing(page: Path, code: str) -> str:
-        """The first thing that a piece of code names and that is not there; empty where all is."""
+        """The first name in a piece of code that does not exist; empty if all names exist."""
         for word in code.split():
             named = FILE.match(word) and ("/" in word or word.endswith((".hpp", ".cpp")))
             if named and not word.startswith(MADE) and word not in ends | USERS:
@@ -52,7 +52,7 @@ def main() -> int:
         block = False
         for number, line in enumerate(page.read_text().splitlines(), 1):
             block ^= line.startswith("```")
-            if block:  # tests/docs runs it.
+            if block:  # tests/docs runs the block.
                 continue
             names = [missing(page, code) for code in CODE.findall(line)]
             links = [link for link in LINK.findall(line) if "://" not in link and not link.startswith("mailto:")]
@@ -68,7 +68,7 @@ def _slashes(name: str) -> list[int]:
 
 
 def _starts(name: str) -> list[int]:
-    """Where the parts of a path begin."""
+    """Start indices of the parts of a path."""
     return [0, *(slash + 1 for slash in _slashes(name))]
 
 

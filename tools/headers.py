@@ -5,7 +5,7 @@ from pathlib import Path
 
 INCLUDE = Path(__file__).parent.parent / "cpp" / "include"
 UMBRELLA = INCLUDE / "fpbm" / "fpbm.hpp"
-# Lanes need a standard library that not everyone has.
+# lanes.hpp needs <experimental/simd>, which not every standard library has.
 LEFT_OUT = {"fpbm/fpbm.hpp", "fpbm/core/lanes.hpp"}
 
 

@@ -2,8 +2,8 @@
 
 Needs fpbm_cpp[clearance], clang-format and the packages in ARMS. No package has meshes of the UR10e: they are read from
 ROS's ur_description in ROS_PACKAGE_PATH. The pose of link i of a URDF file in the frame of joint i of the preset of the
-same arm is the same in all postures, up to the digits of the file. The largest difference is printed and added to the
-radius, as is the error of rounding to 0.1 mm.
+same arm is the same in all postures, up to the digits of the file. The largest difference is printed. This difference
+and the error of rounding to 0.1 mm are added to the radius.
 """
 
 import importlib.metadata
@@ -32,14 +32,14 @@ Frame = NDArray[np.float64]  # (4, 4)
 
 
 class Source(NamedTuple):
-    package: str  # It has the URDF file.
+    package: str  # Package with the URDF file.
     urdf: str
-    tip: str  # The preset's flange.
+    tip: str  # Link of the preset's flange.
     title: str
-    origin: str  # Who made the meshes, and their licence.
+    origin: str  # Author and licence of the meshes.
     meshes: tuple[str, str, str] | None = None  # Package, folder and suffix of meshes that the URDF's package lacks.
-    ros: str | None = None  # ROS package that has them.
-    never_collide: tuple[tuple[str, str], ...] = ()  # Links whose capsules do: tests/python/test_preset_capsules.py.
+    ros: str | None = None  # ROS package with the meshes.
+    never_collide: tuple[tuple[str, str], ...] = ()  # See tests/python/test_preset_capsules.py.
 
 
 FRANKA = "Franka's franka_description, Apache-2.0"
@@ -104,7 +104,7 @@ class Robot(NamedTuple):
     capsules: list[Capsule]  # In the frames of the file's joints.
     poses: NDArray[np.float64]  # Positions of these frames in the frames of the preset's joints, the base first.
     off: NDArray[np.float64]  # Largest deviation of each of these poses [m].
-    turned: NDArray[np.float64]  # And turned [rad].
+    turned: NDArray[np.float64]  # Largest rotation of each of these poses [rad].
 
 
 def version(source: Source) -> str:

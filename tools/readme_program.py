@@ -1,4 +1,4 @@
-"""Prints the program of README's section "In a control loop", whose cost for a user .ci/run measures.
+"""Prints the program of README's section "In a control loop". .ci/run measures the cost of this program for a user.
 
 readme_program.py [HEADING] > program.cpp
 """
@@ -11,7 +11,7 @@ README = Path(__file__).parent.parent / "README.md"
 
 
 def program(heading: str) -> str:
-    """The section's C++ blocks, those that the page does not show included, in a main()."""
+    """The section's C++ blocks, including hidden blocks, in a main()."""
     section = README.read_text().partition(f"## {heading}\n")[2].partition("\n## ")[0]
     blocks = re.findall(r"(?:<!-- invisible-code-block: cpp|```cpp)\n(.*?)(?:-->|```)", section, re.DOTALL)
     if not blocks:

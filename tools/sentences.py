@@ -36,7 +36,7 @@ THROWS = re.compile(
 )
 NEXT_MESSAGE = re.compile(r"[;{}&]|py::|\bdef\b|==")  # Ends a message that is built of several literals.
 END = re.compile(r"(?<!e\.g\.)(?<!i\.e\.)(?<!et al\.)(?<!vs\.)(?<=[.!?])[\"”)*_]*\s+(?=[A-Z0-9`\"“(\[*_{|])")
-PROSE = re.compile(r"(?:^|[\s(“])[A-Za-z][\w'’-]*[,:;]? (?:[\w'’-]+[,:;]? )?[a-z'’-]+")  # Unlike a path or a format.
+PROSE = re.compile(r"(?:^|[\s(“])[A-Za-z][\w'’-]*[,:;]? (?:[\w'’-]+[,:;]? )?[a-z'’-]+")  # Not paths or formats.
 ESCAPES = {r"\n": "\n", r"\t": " ", r"\"": '"', r"\'": "'", r"\\": "\\"}
 
 
@@ -66,7 +66,7 @@ def sentences(name: str, text: str) -> Iterator[Sentence]:
     """The sentences of a file with this name, which decides how to read the text."""
     read = reader(name)
     for kind, lines in read(text) if read else ():
-        if not (kind in (ERROR, MESSAGE) and name.startswith("tests/")):  # There, they repeat a message or name a case.
+        if not (kind in (ERROR, MESSAGE) and name.startswith("tests/")):  # Tests repeat messages and name cases.
             yield from _split(name, kind, lines)
 
 
@@ -203,7 +203,7 @@ def _python(text: str) -> Iterator[tuple[str, Lines]]:
 
 
 def _hash_comments(text: str) -> Iterator[tuple[str, Lines]]:
-    """Comments after #, and texts that make prints or that a YAML file describes parameters with."""
+    """Comments after #, texts that make prints, and descriptions of parameters in YAML files."""
     found = []
     for number, line in enumerate(text.splitlines(), 1):
         if comment := re.search(r"""^([^"'#]*(?:"[^"]*"[^"'#]*|'[^']*'[^"'#]*)*(?<!\S))#+ ?([^#].*)""", line):

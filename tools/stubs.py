@@ -1,6 +1,6 @@
 """Rewrites the type stubs of the compiled module, or checks that they are up to date (--check).
 
-Run it with a Python that has the package installed.
+Run this script with a Python that has the package installed.
 """
 
 import filecmp
@@ -14,7 +14,7 @@ STUBS = Path(__file__).parent.parent / "python" / "fpbm_cpp" / "_core.pyi"
 
 
 def with_types(text: str) -> str:
-    """With members of enums and tuples of words as type checkers want them."""
+    """The text, with members of enums and tuples of words as type checkers require."""
     text = re.sub(r"^(\w+): tuple = ", r"\1: tuple[str, ...] = ", text, flags=re.MULTILINE)
     text = re.sub(r"^(\w+: tuple\[str, \.\.\.\]) = \('(\w+)'\)$", r"\1 = ('\2',)", text, flags=re.MULTILINE)
     text = re.sub(r"^    (\w+): typing\.ClassVar\[Status\].*$", r"    \1 = ...", text, flags=re.MULTILINE)
