@@ -73,7 +73,7 @@ async function copy() {
     await navigator.clipboard.writeText(element("install").textContent);
     button.textContent = "Copied";
   } catch {
-    getSelection().selectAllChildren(element("install")); // If the page may not write to the clipboard.
+    getSelection().selectAllChildren(element("install")); // The page may not write to the clipboard.
     button.textContent = "Selected";
   }
   setTimeout(() => (button.textContent = "Copy"), 2000);

@@ -2,7 +2,7 @@
 
 import { Plane, Raycaster, Vector2, Vector3 } from "three";
 
-const NEAR = { mouse: 36, touch: 56, pen: 44 }; // Largest distance from the target's centre or the tip [pixels].
+const NEAR = { mouse: 36, touch: 56, pen: 44 }; // Largest distance of a pointer from target or tip for a drag [pixels].
 const EDGE = 16; // Distance of the target from the edge of the canvas [pixels].
 
 export class Drag {

@@ -66,7 +66,7 @@ export class ArmShapes extends Group {
 }
 
 function material(color, ghost) {
-  // Behind the arm if both coincide.
+  // The ghost is drawn behind the arm if both coincide.
   const faint = { transparent: true, opacity: 0.24, depthWrite: false, polygonOffset: true, polygonOffsetFactor: 4 };
   return new MeshStandardMaterial({ color, roughness: 0.45, metalness: 0.05, ...(ghost ? faint : {}) });
 }

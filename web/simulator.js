@@ -23,8 +23,8 @@ export const TICK = 1e-3; // [s]
 
 export async function load(bytes) {
   const module = await WebAssembly.compile(bytes);
-  // The module imports functions to print and to exit, for wrong arguments. They are never called, because change()
-  // checks the settings.
+  // The module imports functions to print and to exit, for wrong arguments. These functions are never called, because
+  // change() checks the settings.
   const imports = {};
   for (const { module: from, name } of WebAssembly.Module.imports(module)) {
     imports[from] ??= {};

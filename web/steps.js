@@ -7,7 +7,7 @@ import { MAN } from "./simulator.js";
 
 const STEPS = ["drag", "rest", "damp"];
 const DEGREE = 180 / Math.PI;
-const ALMOST = 0.1; // At rest [°/s].
+const ALMOST = 0.1; // Speed below which joints count as at rest [°/s].
 
 export class Steps {
   constructor() {

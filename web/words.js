@@ -50,7 +50,7 @@ export function describe({ status, dragging, following, resting, damped, limited
   if (status === STALLED) return "The arm makes no progress. It stays at rest until the target moves.";
   if (status > STALLED) return "The posture is singular: the tip cannot move in every direction. The arm brakes.";
   if (dragging && status === SLOWED) return "A joint is at its limit: other joints take over, or the tip slows down.";
-  if (dragging && status === DAMPED) return "Near a singular posture, the tip moves in the remaining directions only.";
+  if (dragging && status === DAMPED) return "Near a singular posture, the tip cannot move in every direction.";
   if (dragging && error > 0.1) return "The tip moves toward the target.";
   if (dragging && limited) return "The tip follows the target, and every joint stays within its limits.";
   if (dragging) return "The tip follows the target, without joint limits.";
