@@ -48,8 +48,8 @@ def on_line(points: Array, origin: Array, u: Array) -> float:
     s, d = (points - origin) @ u, np.linalg.norm(np.cross(points - origin, u), axis=1)
     best = np.inf
     for r in d.max() * np.concatenate([[1 + 1e-12], 1 + np.geomspace(1e-4, 1, 40)]):
-        reach = np.sqrt(r * r - d * d)
-        best = min(best, np.pi * r * r * (max(0.0, np.max(s - reach) - np.min(s + reach)) + 4 / 3 * r))
+        half_length = np.sqrt(r * r - d * d)
+        best = min(best, np.pi * r * r * (max(0.0, np.max(s - half_length) - np.min(s + half_length)) + 4 / 3 * r))
     return best
 
 
@@ -304,7 +304,7 @@ def test_unit_of_a_dae(tmp_path: Path, write) -> None:
     assert volume([c]) == pytest.approx(volume([fit_capsule(corners(0.2, 0.2, 0.4))]), rel=1e-6)
 
 
-REFUSED = {
+REJECTED = {
     "<geometry/>": "line 1: link 'tip': <collision> must have one <geometry> of box, cylinder, sphere, capsule, mesh",
     "": "line 1: link 'tip': <collision> must have one <geometry> of box, cylinder, sphere, capsule, mesh",
     geometry(
@@ -322,7 +322,7 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize(("collision", "message"), REFUSED.items(), ids=range(len(REFUSED)))
+@pytest.mark.parametrize(("collision", "message"), REJECTED.items(), ids=range(len(REJECTED)))
 def test_invalid_collision_is_rejected(collision: str, message: str, write) -> None:
     file = write(link("base"), link("tip", collision), joint("a", "base", "tip"))
     with pytest.raises(ValueError, match=re.escape(f"{file}: {message}")):

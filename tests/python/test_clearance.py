@@ -33,10 +33,10 @@ PLANAR = fp.PlanarArm([0.5, 0.4, 0.3])
 LINKS = tuple(fp.Capsule(i, [0, 0, 0], [length, 0, 0], 0.02 * i) for i, length in enumerate(PLANAR.lengths, 1))
 
 
-def turned(rng: np.random.Generator, reach: float) -> Array:
+def turned(rng: np.random.Generator, extent: float) -> Array:
     """A frame anywhere."""
     pose = np.eye(4)
-    pose[:3, :3], pose[:3, 3] = fp.rotation(rng.normal(size=3)), rng.uniform(-reach, reach, 3)
+    pose[:3, :3], pose[:3, 3] = fp.rotation(rng.normal(size=3)), rng.uniform(-extent, extent, 3)
     return pose
 
 
@@ -302,14 +302,14 @@ def test_an_obstacle_moves() -> None:
 def test_an_arm_avoids_an_obstacle_that_is_expected_to_continue() -> None:
     """The same wall, told to come nearer, stops the arm farther away."""
 
-    def rests(speed: float) -> float:
+    def final_distance(speed: float) -> float:
         tracker = fp.Tracker(PANDA, SCHEMES[1], READY, clearance=fp.Clearance(CAPSULES[5:], [TABLE]))
         tracker.move("table", TABLE, velocity=(0, 0, speed))
         for _ in range(3500):
             tick = tracker.tick([0.4, 0.1, -0.2])
         return float(tick.nearest.distance)
 
-    assert rests(0.0) <= 1.5 * CLEARANCE.margin < 2 * CLEARANCE.margin <= rests(0.3)
+    assert final_distance(0.0) <= 1.5 * CLEARANCE.margin < 2 * CLEARANCE.margin <= final_distance(0.3)
 
 
 # Run files
@@ -400,7 +400,7 @@ URDF = ("arm.urdf", "--tip", "l7")
 
 
 @pytest.fixture
-def in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """With an arm of seven joints, of which l0 and l2 may meet, and a table in a job."""
     links = "".join(f'<link name="l{i}">{LINK}</link>' for i in range(8))
     joints = "".join(
@@ -418,7 +418,7 @@ def in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_from_urdf(in_a_folder: Path) -> None:
+def test_from_urdf(folder: Path) -> None:
     arm = fp.SerialArm.from_urdf("arm.urdf", "l7")
     clearance = fp.Clearance.from_urdf("arm.urdf", "l7", srdf="arm.srdf", obstacles=[TABLE], margin=0.02, per_link=1)
     assert [(each.link, each.name) for each in clearance.capsules] == [(i, f"l{i}") for i in range(8)]
@@ -449,7 +449,7 @@ MOTION = (*URDF, "--path", "line", "--displacement", "0,0,-0.5", "--duration", "
 FILES = ("--per-link", "1", "--clearance", "arm.urdf", "--srdf", "arm.srdf")
 
 
-def test_command_line(in_a_folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_command_line(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("matplotlib")
     monkeypatch.setattr("matplotlib.figure.Figure.savefig", lambda self, file, **_: file.write(b"\x89PNG"))
     result = call("track", *MOTION, *FILES, "--job", "table.toml", "--out", "out/here")
@@ -476,7 +476,7 @@ def test_command_line(in_a_folder: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     assert fp.load("wider/run.npz").options["clearance"].margin == 0.03
 
 
-def test_servo_has_the_same_clearance(in_a_folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_servo_has_the_same_clearance(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from fpbm_cpp import viewer
 
     shown: list[dict[str, Any]] = []
@@ -502,7 +502,7 @@ def test_servo_has_the_same_clearance(in_a_folder: Path, monkeypatch: pytest.Mon
     )
 
 
-def test_capsules_in_a_job(in_a_folder: Path) -> None:
+def test_capsules_in_a_job(folder: Path) -> None:
     text = TABLE_FILE.replace("offset = 0.2", "offset = 0.1") + (
         '[[clearance.capsules]]\nkind = "capsule"\nlink = 7\na = [0, 0, 0]\nb = [0, 0, 0.2]\nradius = 0.05\n'
     )
@@ -531,7 +531,7 @@ def test_capsules_in_a_job(in_a_folder: Path) -> None:
         (["panda", "--clearance", "arm.urdf"], "clearance.tip = '': must be a link; its branches end in 'l7'"),
     ],
 )
-def test_command_errors_have_one_line(in_a_folder: Path, arguments: list[str], line: str) -> None:
+def test_command_errors_have_one_line(folder: Path, arguments: list[str], line: str) -> None:
     result = call("track", *arguments)
     assert result.exit_code == 1
     assert result.stderr.startswith(f"Error: {line}")
@@ -539,7 +539,7 @@ def test_command_errors_have_one_line(in_a_folder: Path, arguments: list[str], l
 
 
 @pytest.mark.parametrize("name", ["sweep", "tune"])
-def test_commands_without_clearance_reject_it(in_a_folder: Path, name: str) -> None:
+def test_commands_without_clearance_reject_it(folder: Path, name: str) -> None:
     result = call(name, "panda", "--job", "table.toml")
     assert result.exit_code == 1
     assert result.stderr == f"Error: {name} does not accept clearance: remove clearance, or use track\n"

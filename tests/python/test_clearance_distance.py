@@ -86,24 +86,24 @@ def some(rng: np.random.Generator, share: float, n: int) -> NDArray[np.bool_]:
 
 def segments(rng: np.random.Generator, n: int) -> Array:
     """Start and displacement: of all lengths, some of them zero, some in whole numbers."""
-    start, way = (power(rng, -3, 1, n) * rng.uniform(-1, 1, (n, 3)) for _ in range(2))
+    start, displacement = (power(rng, -3, 1, n) * rng.uniform(-1, 1, (n, 3)) for _ in range(2))
     whole = some(rng, 0.2, n)
-    start, way = (np.where(whole, rng.integers(-2, 3, (n, 3)), x) for x in (start, way))
-    return np.hstack((start, np.where(some(rng, 0.1, n), 0, way)))
+    start, displacement = (np.where(whole, rng.integers(-2, 3, (n, 3)), x) for x in (start, displacement))
+    return np.hstack((start, np.where(some(rng, 0.1, n), 0, displacement)))
 
 
 def near(rng: np.random.Generator, first: Array) -> Array:
     """Segments near to others: parallel, crossing or touching, to 1e-18 and exactly; some far away."""
     n = len(first)
-    start, way = np.hsplit(segments(rng, n), 2)
+    start, displacement = np.hsplit(segments(rng, n), 2)
     angle = np.where(some(rng, 0.3, n), 0, power(rng, -18, -1, n))
     length = np.linalg.norm(first[:, 3:], axis=1, keepdims=True)
     parallel = rng.uniform(-2, 2, (n, 1)) * (first[:, 3:] + angle * length * rng.uniform(-1, 1, (n, 3)))
-    way = np.where(some(rng, 0.3, n), parallel, way)
+    displacement = np.where(some(rng, 0.3, n), parallel, displacement)
     s, t = (np.where(some(rng, 0.5, n), rng.integers(0, 2, (n, 1)), rng.uniform(size=(n, 1))) for _ in range(2))
-    start = np.where(some(rng, 0.5, n), first[:, :3] + s * first[:, 3:] - t * way, start)
+    start = np.where(some(rng, 0.5, n), first[:, :3] + s * first[:, 3:] - t * displacement, start)
     start = start + np.where(some(rng, 0.5, n), power(rng, -18, -2, n), 0) * rng.uniform(-1, 1, (n, 3))
-    return np.hstack((start, way))
+    return np.hstack((start, displacement))
 
 
 def capsules(rng: np.random.Generator, cores: Array) -> Array:
@@ -132,9 +132,9 @@ def boxes_and_capsules(rng: np.random.Generator, n: int) -> Array:
 
 
 def coal_capsule(row: Array) -> tuple[coal.Capsule, coal.Transform3s]:
-    way = row[3:6] - row[:3]
-    length = np.linalg.norm(way)
-    z = way / length if length > 0 else np.array([0.0, 0.0, 1.0])
+    displacement = row[3:6] - row[:3]
+    length = np.linalg.norm(displacement)
+    z = displacement / length if length > 0 else np.array([0.0, 0.0, 1.0])
     x = np.cross(np.eye(3)[np.argmin(np.abs(z))], z)
     x /= np.linalg.norm(x)
     R = np.stack((x, np.cross(z, x), z), axis=1)

@@ -91,8 +91,8 @@ def test_directory_with_the_name_of_a_file_is_reported(tmp_path: Path) -> None:
     assert [file.name for file in tmp_path.iterdir()] == ["fig1.png"]
 
 
-@pytest.mark.parametrize(("module", "said"), [("matplotlib", "needs matplotlib"), ("click", "needs click")])
-def test_missing_extra(module: str, said: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("module", "requirement"), [("matplotlib", "needs matplotlib"), ("click", "needs click")])
+def test_missing_extra(module: str, requirement: str, tmp_path: Path) -> None:
     program = (
         f"import sys; sys.modules['{module}'] = None; sys.argv = ['fpbm-cpp', 'reproduce', '--out', 'out']\n"
         "from fpbm_cpp.__main__ import main; sys.exit(main())"
@@ -100,7 +100,7 @@ def test_missing_extra(module: str, said: str, tmp_path: Path) -> None:
     result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False, cwd=tmp_path)
     assert result.returncode == 1
     assert len(result.stderr.splitlines()) == 1
-    assert said in result.stderr
+    assert requirement in result.stderr
     assert 'pip install "fpbm_cpp[cli]"' in result.stderr
     assert not list(tmp_path.iterdir())
 
@@ -109,11 +109,11 @@ def test_missing_extra(module: str, said: str, tmp_path: Path) -> None:
 def test_ctrl_c(tmp_path: Path) -> None:
     out = tmp_path / "out"
 
-    def heed_interrupts() -> None:  # A shell lets its background jobs ignore them.
+    def restore_interrupts() -> None:  # A shell lets its background jobs ignore them.
         signal.signal(signal.SIGINT, signal.SIG_DFL)
 
     start = [*MODULE, "reproduce", "--out", str(out)]
-    with subprocess.Popen(start, stderr=subprocess.PIPE, text=True, preexec_fn=heed_interrupts) as process:
+    with subprocess.Popen(start, stderr=subprocess.PIPE, text=True, preexec_fn=restore_interrupts) as process:
         assert process.stderr is not None
         while "drawing" not in process.stderr.readline():
             time.sleep(0.01)

@@ -46,7 +46,7 @@ def call(*arguments: str) -> Result:
     return CliRunner().invoke(command, arguments)
 
 
-def refused(*arguments: str) -> str:
+def error_of(*arguments: str) -> str:
     """The one plain line with which a call fails."""
     result = call(*arguments)
     assert result.exit_code == 1, result.output
@@ -61,13 +61,13 @@ def examples(name: str) -> list[str]:
 
 
 @pytest.fixture(autouse=True)
-def in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
 
 @pytest.fixture
-def sketches(monkeypatch: pytest.MonkeyPatch) -> None:
+def small_figures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Figures are made, and not drawn."""
     monkeypatch.setattr("matplotlib.figure.Figure.savefig", lambda self, file, **_: file.write(b"\x89PNG"))
 
@@ -113,7 +113,7 @@ def test_every_key_of_a_job_is_an_option() -> None:
     }
 
 
-@pytest.mark.usefixtures("sketches")
+@pytest.mark.usefixtures("small_figures")
 @pytest.mark.parametrize("name", ["track", "compare", "sweep"])
 def test_examples_of_the_help_run(name: str) -> None:
     if name in ("track", "compare"):
@@ -149,9 +149,9 @@ def test_summary_agrees_with_the_run() -> None:
     assert f"{run.manipulability().min():.4g} " in lines["least manipulability"]
     assert "complete, t = 3 s" in lines["status"]
     assert result.stdout.splitlines()[0] == "panda, circle, fpbm"
-    said = " ".join(result.stdout.split())
-    assert "k2 = 25" in said
-    assert "k1 = " not in said
+    shown_text = " ".join(result.stdout.split())
+    assert "k2 = 25" in shown_text
+    assert "k1 = " not in shown_text
     assert max(map(len, result.stdout.splitlines())) <= 100
     assert result.stdout.isascii()
 
@@ -179,7 +179,7 @@ def test_a_motion_without_a_sample() -> None:
     assert "the posture is singular" in result.stdout
 
 
-def test_out(in_a_folder: Path) -> None:
+def test_out(folder: Path) -> None:
     result = call("track", "panda", *QUICK, "--out", "a/b", "--dark")
     assert result.exit_code == 0, result.output
     assert sorted(os.listdir("a/b")) == ["job.toml", "run.npz", "run.png"]
@@ -190,7 +190,7 @@ def test_out(in_a_folder: Path) -> None:
     assert call("track", "--job", "a/b/job.toml").exit_code == 0
 
 
-@pytest.mark.usefixtures("sketches")
+@pytest.mark.usefixtures("small_figures")
 def test_also_writes_further_formats(monkeypatch: pytest.MonkeyPatch) -> None:
     plot = importlib.import_module("fpbm_cpp.plot")
     monkeypatch.setattr(plot, "animate", lambda run, file, *, dark: file.write_text(f"{len(run.t)} {dark}"))
@@ -216,22 +216,22 @@ def test_limits() -> None:
     fast = call("track", "panda", "--duration", "0.4", "--dt", "0.01").stdout
     assert re.search(r"joints beyond a bound +\d +panda_joint.*: --limits keeps the bounds", fast)
     assert "beyond" not in call("track", "panda", "--duration", "5").stdout
-    line = refused("track", "planar:1,1,1", "--limit-velocity", "1")
+    line = error_of("track", "planar:1,1,1", "--limit-velocity", "1")
     assert line.startswith("--limit-acceleration: is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is")
 
 
 def test_limits_of_an_arm_without_acceleration_bounds() -> None:
     shutil.copy(ROOT / "examples/04_exported_arm.urdf", "arm.urdf")
     arm = ["arm.urdf", "--tip", "tool", "--duration", "2"]
-    said = "is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is usual"
+    shown_text = "is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is usual"
     for name in MOTIONS:
-        assert refused(name, *arm, "--limits") == f"--limit-acceleration: {said}"
+        assert error_of(name, *arm, "--limits") == f"--limit-acceleration: {shown_text}"
     Path("job.toml").write_text("[arm]\nkind = 'urdf'\nfile = 'arm.urdf'\ntip = 'tool'\n[limits]\n")
-    assert refused("track", "--job", "job.toml") == f"--limit-acceleration: {said}"
+    assert error_of("track", "--job", "job.toml") == f"--limit-acceleration: {shown_text}"
     assert call("track", *arm, "--limit-acceleration", "10").exit_code == 0
 
 
-def test_sweep_and_tune_keep_limits(in_a_folder: Path) -> None:
+def test_sweep_and_tune_keep_limits(folder: Path) -> None:
     limits = ["--limit-velocity", "0.05", "--limit-acceleration", "5"]
     quick = ["planar:1,1,1,1", "--duration", "2", "--dt", "0.01"]
     assert call("sweep", *quick, "--starts", "3", *limits, "--out", "out").exit_code == 0
@@ -282,13 +282,13 @@ def test_options_override_a_file() -> None:
 
 def test_several_paths_of_a_file_reject_path_options() -> None:
     Path("job.toml").write_text("[arm]\nkind = 'planar'\nlengths = [1, 1, 1]\n" + "[[path]]\nkind = 'circle'\n" * 2)
-    assert refused("track", "--job", "job.toml", "--radius", "0.1").startswith("--radius: the file has 2 paths")
+    assert error_of("track", "--job", "job.toml", "--radius", "0.1").startswith("--radius: the file has 2 paths")
     assert call("track", "--job", "job.toml", "--path", "circle", "--radius", "0.1", *QUICK).exit_code == 0
 
 
 def test_a_job_that_fails_is_not_saved() -> None:
-    refused("track", "panda", "--dt", "0.3", "--save-job", "job.toml")
-    refused("track", "panda", "--qd0", "1", "--save-job", "job.toml")
+    error_of("track", "panda", "--dt", "0.3", "--save-job", "job.toml")
+    error_of("track", "panda", "--qd0", "1", "--save-job", "job.toml")
     assert not Path("job.toml").exists()
 
 
@@ -298,8 +298,8 @@ def test_a_joint_beyond_a_bound_is_reported(name: str) -> None:
     values = getattr(run, name).copy()
     values[50, 2] = -20.0
     assert "beyond" not in summary(run)
-    said = summary(replace(run, **{name: values}))
-    assert re.search("joints beyond a bound +1 +panda_joint3: --limits keeps the bounds", said)
+    shown_text = summary(replace(run, **{name: values}))
+    assert re.search("joints beyond a bound +1 +panda_joint3: --limits keeps the bounds", shown_text)
 
 
 def test_a_motion_without_samples_has_no_animation() -> None:
@@ -360,7 +360,7 @@ def test_invalid_options_are_reported(arguments: list[str], line: str) -> None:
     Path("bad.toml").write_text("[arm")
     Path("two.urdf").write_text(TWO_BRANCHES)
     Path("wrong.toml").write_text("[arm]\nkind = 'preset'\nname = 'panda'\n[path]\nkind = 'circle'\nradius = -1")
-    assert line in refused("track", *arguments, "--out", "out", "--save-job", "job.toml")
+    assert line in error_of("track", *arguments, "--out", "out", "--save-job", "job.toml")
     assert sorted(os.listdir()) == ["bad.toml", "two.urdf", "wrong.toml"]
 
 
@@ -386,15 +386,15 @@ def test_a_missing_arm_is_reported() -> None:
 def test_a_folder_that_cannot_be_written_to() -> None:
     Path("file").write_text("mine")
     for name in ("sweep",):
-        assert refused(name, "panda", *QUICK, "--out", "file") == "cannot write to file: it is a file: give a folder"
-        assert refused(name, "panda", *QUICK, "--out", "file/below") == "cannot write to file/below: Not a directory"
+        assert error_of(name, "panda", *QUICK, "--out", "file") == "cannot write to file: it is a file: give a folder"
+        assert error_of(name, "panda", *QUICK, "--out", "file/below") == "cannot write to file/below: Not a directory"
     line = call("track", "panda", *QUICK, "--save-job", "file/job.toml").stderr
     assert line == "Error: cannot write to file/job.toml: Not a directory\n"
     assert Path("file").read_text() == "mine"
     assert os.listdir() == ["file"]
 
 
-@pytest.mark.usefixtures("sketches")
+@pytest.mark.usefixtures("small_figures")
 def test_an_unwritable_folder_of_figures_is_reported() -> None:
     Path("file").write_text("mine")
     for name in ("track", "compare"):
@@ -450,7 +450,7 @@ def test_compare() -> None:
         assert row[3] == f"{np.abs(run.qd).max():.4g}"
 
 
-@pytest.mark.usefixtures("sketches")
+@pytest.mark.usefixtures("small_figures")
 def test_compare_writes() -> None:
     result = call("compare", "panda", *QUICK, "--schemes", "mvn,fpbm", "--out", "out")
     assert result.exit_code == 0, result.output
@@ -458,12 +458,12 @@ def test_compare_writes() -> None:
 
 
 def test_compare_rejects_invalid_options() -> None:
-    assert refused("compare", "panda", "--schemes", "mvn,fbpm").startswith("--schemes = 'fbpm': must be one of mvn, ")
+    assert error_of("compare", "panda", "--schemes", "mvn,fbpm").startswith("--schemes = 'fbpm': must be one of mvn, ")
     assert (
-        refused("compare", "panda", "--weights", "1") == "--weights = 1: must be real numbers of shape (n,) or (n, n)"
+        error_of("compare", "panda", "--weights", "1") == "--weights = 1: must be real numbers of shape (n,) or (n, n)"
     )
     Path("job.toml").write_text("[arm]\nkind = 'preset'\nname = 'panda'\n[scheme]\nkind = 'fpbm'\nalhpa = 1")
-    assert "did you mean 'alpha'?" in refused("compare", "--job", "job.toml", "--schemes", "fpbm")
+    assert "did you mean 'alpha'?" in error_of("compare", "--job", "job.toml", "--schemes", "fpbm")
     result = call("compare", "planar:1,1,1,1", "--q0", "0,0,0,0")
     assert result.exit_code == 1
     assert result.stderr == "Error: no motion is complete: the remarks above have the causes and remedies\n"
@@ -495,11 +495,13 @@ def test_sweep() -> None:
 
 
 def test_sweep_rejects_invalid_options() -> None:
-    assert refused("sweep", "panda", "--vary", "alpha").startswith("--vary alpha: must have the form alpha=0,0.6,1 or ")
-    assert refused("sweep", "panda", "--vary", "alpha=0:1").startswith("--vary alpha=0:1: must have the form ")
-    assert "did you mean 'alpha'?" in refused("sweep", "panda", "--vary", "alhpa=1")
-    assert refused("sweep", "panda", "--vary", "alpha=2") == "--alpha = 2: must be in [0, 1]"
-    assert "remove qd0" in refused("sweep", "panda", "--qd0", "0,0,0,0,0,0,0")
+    assert error_of("sweep", "panda", "--vary", "alpha").startswith(
+        "--vary alpha: must have the form alpha=0,0.6,1 or "
+    )
+    assert error_of("sweep", "panda", "--vary", "alpha=0:1").startswith("--vary alpha=0:1: must have the form ")
+    assert "did you mean 'alpha'?" in error_of("sweep", "panda", "--vary", "alhpa=1")
+    assert error_of("sweep", "panda", "--vary", "alpha=2") == "--alpha = 2: must be in [0, 1]"
+    assert "remove qd0" in error_of("sweep", "panda", "--qd0", "0,0,0,0,0,0,0")
 
 
 def test_sweep_reports_motions_that_stop() -> None:
@@ -512,7 +514,7 @@ def test_sweep_reports_motions_that_stop() -> None:
 def interrupted(arguments: list[str], after: str, seconds: float) -> tuple[str, str, int]:
     """Later output, errors and exit code of a call that gets Ctrl-C after it prints this text and the delay is over."""
 
-    def heed_interrupts() -> None:  # A shell lets its background jobs ignore them.
+    def restore_interrupts() -> None:  # A shell lets its background jobs ignore them.
         signal.signal(signal.SIGINT, signal.SIG_DFL)
 
     program = (
@@ -524,7 +526,7 @@ def interrupted(arguments: list[str], after: str, seconds: float) -> tuple[str, 
     )
     start = [sys.executable, "-u", "-c", program]
     with subprocess.Popen(
-        start, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=heed_interrupts
+        start, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=restore_interrupts
     ) as child:
         assert child.stdout is not None
         try:
@@ -557,10 +559,10 @@ def test_tune() -> None:
     )
     assert result.exit_code == 0, result.output
     assert "peak_velocity" in result.stdout
-    assert refused("tune", "panda", "--objective", "speed")
+    assert error_of("tune", "panda", "--objective", "speed")
 
 
-@pytest.mark.usefixtures("sketches")
+@pytest.mark.usefixtures("small_figures")
 def test_tune_writes_a_job() -> None:
     arguments = ["planar:1,1,1,1", "--duration", "1", "--dt", "0.01"]
     result = call("tune", *arguments, "--trials", "20", "--out", "out")
@@ -701,7 +703,7 @@ def test_servo_accepts_a_stack_of_a_job() -> None:
     Path("stack.toml").write_text(STACK)
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = str(server.getsockname()[1])
-        assert f"port {port} is in use" in refused("servo", "--job", "stack.toml", "--port", port, "--no-browser")
+        assert f"port {port} is in use" in error_of("servo", "--job", "stack.toml", "--port", port, "--no-browser")
 
 
 def test_servo_has_no_path_options_and_always_limits() -> None:
@@ -716,21 +718,21 @@ def test_servo_has_no_path_options_and_always_limits() -> None:
 
 def test_servo_reports_invalid_options() -> None:
     shutil.copy(ROOT / "examples/04_exported_arm.urdf", "arm.urdf")
-    said = "--limit-acceleration: is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is usual"
-    assert refused("servo", "arm.urdf", "--tip", "tool") == said
-    assert refused("servo", "planar:1,1,1", "--limit-velocity", "1") == said
-    assert refused("servo", "panda", "--task", "dance").startswith("--task = 'dance': must be one of")
-    assert refused("servo", "panda", "--q0", "1,2").startswith("--q0 has 2 entries")
-    assert refused("servo", "robot").startswith("ARM = 'robot': must be one of")
+    shown_text = "--limit-acceleration: is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is usual"
+    assert error_of("servo", "arm.urdf", "--tip", "tool") == shown_text
+    assert error_of("servo", "planar:1,1,1", "--limit-velocity", "1") == shown_text
+    assert error_of("servo", "panda", "--task", "dance").startswith("--task = 'dance': must be one of")
+    assert error_of("servo", "panda", "--q0", "1,2").startswith("--q0 has 2 entries")
+    assert error_of("servo", "robot").startswith("ARM = 'robot': must be one of")
     Path("job.toml").write_text("[arm]\nkind = 'preset'\nname = 'panda'\n[run]\nqd0 = [0.1, 0, 0, 0, 0, 0, 0]")
-    assert refused("servo", "--job", "job.toml") == "servo starts at rest: remove qd0, or use track"
+    assert error_of("servo", "--job", "job.toml") == "servo starts at rest: remove qd0, or use track"
     pytest.importorskip("viser")
-    assert refused("servo", "panda", "--q0", "9,0,0,-2,0,2,0") == (
+    assert error_of("servo", "panda", "--q0", "9,0,0,-2,0,2,0") == (
         "--q0[0] = 9: must be within the joint's range, from -2.8973 to 2.8973"
     )
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
-        assert f"port {port} is in use" in refused("servo", "panda", "--port", str(port), "--no-browser")
+        assert f"port {port} is in use" in error_of("servo", "panda", "--port", str(port), "--no-browser")
 
 
 @posix

@@ -431,8 +431,10 @@ def test_command_writes_robots(arm: Path) -> None:
     assert call("two_pandas", "-o", "-").stdout == export_tree(
         two_pandas, name="two_pandas", source="preset two_pandas"
     )
-    assert_refused(call(arm, "--tip", "top", "--tip", "tip", "-o", "-"), "tips has 'top': must be links, perhaps 'tip'")
-    assert_refused(call(arm, "--base", "wheels", "-o", "-"), "base = 'wheels': must be one of fixed, planar")
+    assert_rejected(
+        call(arm, "--tip", "top", "--tip", "tip", "-o", "-"), "tips has 'top': must be links, perhaps 'tip'"
+    )
+    assert_rejected(call(arm, "--base", "wheels", "-o", "-"), "base = 'wheels': must be one of fixed, planar")
     for wrong in ((arm, "--capsules"), ("two_pandas", "--capsules")):
         result = call(*wrong, "-o", "-")
         assert result.exit_code == 2
@@ -487,7 +489,7 @@ def test_standard_output(arm: Path) -> None:
 
 def test_capsules_of_a_file(arm: Path) -> None:
     result = call(arm, "--tip", "tip", "-o", "-", "--capsules")
-    assert_refused(
+    assert_rejected(
         result,
         f"{arm}: has no <collision> geometry: must be on at least one link: add it, or give capsules to Clearance()",
     )
@@ -534,7 +536,7 @@ def test_device(arm: Path) -> None:
     assert Path("/dev/null").is_char_device()
 
 
-def assert_refused(result: Result, message: str) -> None:
+def assert_rejected(result: Result, message: str) -> None:
     assert result.exit_code == 1
     assert result.output == f"Error: {message}\n"
 
@@ -545,34 +547,34 @@ def test_errors_have_one_line(arm: Path, tmp_path: Path, monkeypatch: pytest.Mon
     before = sorted(os.listdir(tmp_path))
     to_out = ("--tip", "tip", "-o", out)
     bad = arm.parent / "nowhere.urdf"
-    assert_refused(call(bad, *to_out), f"cannot read {bad}: No such file or directory")
-    assert_refused(call(tmp_path, *to_out), f"cannot read {tmp_path}: Is a directory")
+    assert_rejected(call(bad, *to_out), f"cannot read {bad}: No such file or directory")
+    assert_rejected(call(tmp_path, *to_out), f"cannot read {tmp_path}: Is a directory")
     leaves = "its branches end in 'tip'"
-    assert_refused(call(arm, "--tip", "top", "-o", out), f"tip = 'top': must be a link, perhaps 'tip'; {leaves}")
-    assert_refused(call(arm, *to_out, "--base", "x"), f"base = 'x': must be a link; {leaves}")
+    assert_rejected(call(arm, "--tip", "top", "-o", out), f"tip = 'top': must be a link, perhaps 'tip'; {leaves}")
+    assert_rejected(call(arm, *to_out, "--base", "x"), f"base = 'x': must be a link; {leaves}")
     broken = tmp_path / "broken.urdf"
     broken.write_text("<robot/")
-    assert_refused(call(broken, *to_out), f"{broken}: line 1: invalid XML: unclosed token")
+    assert_rejected(call(broken, *to_out), f"{broken}: line 1: invalid XML: unclosed token")
     broken.unlink()
     demand = "must be a C++ identifier, not a keyword, Eigen, fpbm or std"
-    assert_refused(call(arm, *to_out, "--name", "int"), f"name = 'int': {demand}")
-    assert_refused(call(arm, "--tip", "tip", "-o", tmp_path), f"cannot write to {tmp_path}: Is a directory")
+    assert_rejected(call(arm, *to_out, "--name", "int"), f"name = 'int': {demand}")
+    assert_rejected(call(arm, "--tip", "tip", "-o", tmp_path), f"cannot write to {tmp_path}: Is a directory")
     lost = tmp_path / "no" / "out.hpp"
-    assert_refused(call(arm, "--tip", "tip", "-o", lost), f"cannot write to {lost}: No such file or directory")
+    assert_rejected(call(arm, "--tip", "tip", "-o", lost), f"cannot write to {lost}: No such file or directory")
 
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
     with monkeypatch.context() as patch:
         patch.setattr(os, "replace", full)
-        assert_refused(call(arm, *to_out), f"cannot write to {out}: No space left on device")
+        assert_rejected(call(arm, *to_out), f"cannot write to {out}: No space left on device")
     assert out.read_text() == "mine"
     assert sorted(os.listdir(tmp_path)) == before
 
 
 def test_invalid_usage_is_reported(arm: Path) -> None:
-    for arguments, said in (((arm, "--tip", "tip"), "--out"), ((), "ARM")):
+    for arguments, words in (((arm, "--tip", "tip"), "--out"), ((), "ARM")):
         result = call(*arguments)
         assert result.exit_code == 2
-        assert said in result.output.splitlines()[-1]
+        assert words in result.output.splitlines()[-1]
     assert "Example: fpbm-cpp export-header my_arm.urdf --tip tool -o my_arm.hpp" in call("--help").output

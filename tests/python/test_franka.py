@@ -50,7 +50,7 @@ def derivative(t: np.ndarray, q: np.ndarray, order: int) -> np.ndarray:
     return q
 
 
-def refused(t: np.ndarray, q: np.ndarray) -> set[str]:
+def violated_conditions(t: np.ndarray, q: np.ndarray) -> set[str]:
     """Which conditions commands q [rad] at times t [s] break.
 
     Velocity: libfranka 0.21, joint_velocity_limits.h, with the position-based limits of the robot's URDF, at the
@@ -61,8 +61,8 @@ def refused(t: np.ndarray, q: np.ndarray) -> set[str]:
     offset = joint_limits("position_based_velocity_limits", "velocity_offset")
     deceleration = joint_limits("position_based_velocity_limits", "deceleration_limit")
 
-    def speed_limit(way: np.ndarray) -> np.ndarray:
-        root = np.sqrt(np.maximum(0, 2 * deceleration * way))
+    def speed_limit(distance: np.ndarray) -> np.ndarray:
+        root = np.sqrt(np.maximum(0, 2 * deceleration * distance))
         return np.minimum(fastest, np.maximum(0, root - offset)) - EPS
 
     v, a, j = (derivative(t, q, order) for order in (1, 2, 3))
@@ -119,8 +119,8 @@ def commands(motion) -> tuple[np.ndarray, np.ndarray]:
 
 
 def test_libfranka_rejects_no_command(motion):
-    assert refused(*from_rest_to_rest(*commands(motion))) == set()
-    assert refused(*from_rest_to_rest(np.arange(len(motion.q)), np.array(motion.q))) == set()
+    assert violated_conditions(*from_rest_to_rest(*commands(motion))) == set()
+    assert violated_conditions(*from_rest_to_rest(np.arange(len(motion.q)), np.array(motion.q))) == set()
     shares = motion.shares()
     assert max(shares.values()) <= ROUNDING
     assert shares["velocity"] > 0.1  # The arm moved.
@@ -143,7 +143,7 @@ def beyond(q: np.ndarray) -> None:
     q[:, 3] += -0.1 - q[:, 3].max()
 
 
-def hasty(q: np.ndarray) -> None:
+def fast_approach(q: np.ndarray) -> None:
     """From rest to rest in 1 s, at most at 2.7 rad/s."""
     s = np.linspace(0, 1, 1001)
     q[:1001, 0] += 1.44 * s**3 * (10 - 15 * s + 6 * s**2)
@@ -156,23 +156,23 @@ def hasty(q: np.ndarray) -> None:
         (step, {"acceleration", "jerk"}),
         (spike, {"jerk"}),
         (beyond, {"position", "velocity", "approach"}),
-        (hasty, {"velocity", "approach"}),
+        (fast_approach, {"velocity", "approach"}),
     ],
 )
 def test_faults_are_detected(motion, fault, conditions):
     q = np.tile(motion.q[0], (1500, 1))
-    assert refused(*from_rest_to_rest(np.arange(1500), q)) == set()
+    assert violated_conditions(*from_rest_to_rest(np.arange(1500), q)) == set()
     fault(q)
-    assert refused(*from_rest_to_rest(np.arange(1500), q)) == conditions
+    assert violated_conditions(*from_rest_to_rest(np.arange(1500), q)) == conditions
 
 
-@pytest.mark.parametrize(("way", "conditions"), [(0.30, set()), (0.20, {"velocity", "approach"})])
-def test_the_velocity_bound_decreases_near_the_end_of_the_range(motion, way, conditions):
+@pytest.mark.parametrize(("distance", "conditions"), [(0.30, set()), (0.20, {"velocity", "approach"})])
+def test_the_velocity_bound_decreases_near_the_end_of_the_range(motion, distance, conditions):
     """At 0.9 rad/s, which joint 2 may be so far from its end as (0.9 + 0.25)^2 / 5.17 rad = 0.256 rad."""
     q = np.tile(motion.q[0], (50, 1))
     t = 1e-3 * np.arange(50)
-    q[:, 1] = joint_limits("limit", "upper")[1] - way + 0.9 * (t - t[-1])
-    assert refused(t, q) == conditions
+    q[:, 1] = joint_limits("limit", "upper")[1] - distance + 0.9 * (t - t[-1])
+    assert violated_conditions(t, q) == conditions
 
 
 def test_lost_cycles_do_not_hide_a_fault(motion):
@@ -180,25 +180,25 @@ def test_lost_cycles_do_not_hide_a_fault(motion):
     ticks = np.arange(len(q))
     kept = np.random.default_rng(1).random(len(ticks)) > 0.2
     kept[499:502] = True
-    assert refused(*from_rest_to_rest(ticks[kept], q[kept])) == set()
+    assert violated_conditions(*from_rest_to_rest(ticks[kept], q[kept])) == set()
     step(q)
-    assert refused(*from_rest_to_rest(ticks[kept], q[kept])) >= {"acceleration", "jerk"}
+    assert violated_conditions(*from_rest_to_rest(ticks[kept], q[kept])) >= {"acceleration", "jerk"}
 
 
 def test_the_robot_received_the_recorded_commands(motion):
     """It tells each command in the state after, as a float."""
-    told = {tuple(np.float32(q).tolist()) for q in commands(motion)[1]}
-    unknown = [desired for desired in motion.desired if tuple(desired) not in told]
+    sent_commands = {tuple(np.float32(q).tolist()) for q in commands(motion)[1]}
+    unknown = [desired for desired in motion.desired if tuple(desired) not in sent_commands]
     assert all(desired == motion.desired[0] for desired in unknown)  # It held its first position until it got some.
-    assert len(unknown) < len(told) / 2
+    assert len(unknown) < len(sent_commands) / 2
 
 
 def test_the_tip_is_on_the_circle(motion):
     start = example.ARM.forward(motion.q[0])
     for k in range(round(PATH.duration / example.DT)):
-        way = PATH.sample(k * example.DT)[0]
+        displacement = PATH.sample(k * example.DT)[0]
         off = example.ARM.forward(motion.q[k]) - start
-        np.testing.assert_allclose(off[:3, 3], way, atol=1e-6)
+        np.testing.assert_allclose(off[:3, 3], displacement, atol=1e-6)
         np.testing.assert_allclose(off[:3, :3], 0, atol=1e-6)
 
 
@@ -234,7 +234,7 @@ def test_ctrl_c_stops_within_bounds(monkeypatch):
     monkeypatch.setattr(example, "interrupted", Interrupted(700))  # In the midst of the circle.
     motion = drive_robot()[0]
     assert len(motion.q) < 1500
-    assert refused(*from_rest_to_rest(np.arange(len(motion.q)), np.array(motion.q))) == set()
+    assert violated_conditions(*from_rest_to_rest(np.arange(len(motion.q)), np.array(motion.q))) == set()
 
 
 def test_a_robot_without_response_raises():

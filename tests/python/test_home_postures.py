@@ -112,10 +112,10 @@ REQUIRED = {
 @with_robots
 @pytest.mark.parametrize("name", some(REQUIRED))
 def test_required_postures_are_accepted(name: str) -> None:
-    (urdf, tip, base, (home,)), refused = REQUIRED[name]
+    (urdf, tip, base, (home,)), expected = REQUIRED[name]
     arm = fp.SerialArm.from_urdf(ROBOTS / urdf, tip, base)
     without = fp.Clearance.from_urdf(ROBOTS / urdf, tip, base)
-    with pytest.raises(fp.ParameterError, match=refused):
+    with pytest.raises(fp.ParameterError, match=expected):
         fp.Tracker(arm, fp.MVN(), home, clearance=without)
     clearance = fp.Clearance.from_urdf(ROBOTS / urdf, tip, base, postures=home)
     assert clearance.margin == MARGIN

@@ -35,7 +35,7 @@ def job_of(text: str) -> dict[str, Any]:
     return tomlkit.parse(text).unwrap()
 
 
-def complaints(text: str) -> list[str]:
+def errors_of(text: str) -> list[str]:
     with pytest.raises(JobError) as caught:
         prepare(job_of(text))
     return str(caught.value).splitlines()
@@ -258,9 +258,9 @@ def test_a_scheme_has_the_damping_of_the_job() -> None:
 
 def test_default_values_are_reported() -> None:
     motion = prepare({"arm": PANDA, "scheme": {"kind": "fpbm", "k1": 3.0}})
-    taken = {text for texts in motion.taken.values() for text in texts}
-    assert "k1 = 3" not in taken
-    assert {"k2 = 25", "radius = 0.1", "in_plane = yz", "weights = 1 for each", "null_damping = 2"} <= taken
+    defaults = {text for texts in motion.taken.values() for text in texts}
+    assert "k1 = 3" not in defaults
+    assert {"k2 = 25", "radius = 0.1", "in_plane = yz", "weights = 1 for each", "null_damping = 2"} <= defaults
     assert not prepare(motion.job).taken
 
 
@@ -469,17 +469,17 @@ LAWS = "sin_squared, quintic, constant_speed"
     ],
 )
 def test_an_invalid_value_is_reported(text: str, line: str) -> None:
-    (said,) = complaints(text)
-    assert line in said
+    (error,) = errors_of(text)
+    assert line in error
 
 
 def test_every_invalid_value_is_reported() -> None:
     text = "[arm]\nkind = 'preset'\nname = 3\n[path]\nkind = 'circle'\nradius = 'x'\n[run]\nq0 = 'x'\ndt = 'x'"
-    assert [line.split(" ")[0] for line in complaints(text)] == ["arm.name", "path.radius", "run.q0", "run.dt"]
+    assert [line.split(" ")[0] for line in errors_of(text)] == ["arm.name", "path.radius", "run.q0", "run.dt"]
 
 
 def test_a_long_value_is_cut() -> None:
-    (line,) = complaints(f"{ARM}[run]\nq0 = {['x' * 500]}")
+    (line,) = errors_of(f"{ARM}[run]\nq0 = {['x' * 500]}")
     assert len(line) < 130
 
 

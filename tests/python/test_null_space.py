@@ -39,8 +39,8 @@ class Case:
         self.W = np.eye(arm.dof) if name in ("MVN", "MAN") else np.diag(np.arange(1.0, arm.dof + 1))
 
     def resolve(self, **options):
-        asked = (self.q, self.qd, self.known.tip, self.xd, self.xdd)
-        return self.make(**options).resolve(self.arm, *asked, task=self.task)
+        arguments = (self.q, self.qd, self.known.tip, self.xd, self.xdd)
+        return self.make(**options).resolve(self.arm, *arguments, task=self.task)
 
 
 @st.composite
@@ -91,7 +91,7 @@ CIRCLE = fp.Circle(0.05, 10.0)
 BENT = np.array([0.2, 2.0, -1.8, 1.8])  # Both tasks are far from singular.
 
 
-def furthest(run, of):
+def largest_displacement(run, of):
     return np.linalg.norm([of(q) for q in run.q] - of(run.q[0]), axis=1).max()
 
 
@@ -101,8 +101,8 @@ def test_an_elbow_stays_while_the_tip_moves_along_a_circle(scheme):
     stack = fp.Stack(fp.PositionTask(name="tip"), fp.PositionTask("joint_3", name="elbow"))
     free = fp.simulate(PLANAR, CIRCLE, SCHEMES[scheme](4, **options), BENT, dt=1e-2)
     held = fp.simulate(PLANAR, CIRCLE, SCHEMES[scheme](4, **options), BENT, dt=1e-2, stack=stack, task="tip")
-    assert furthest(free, lambda q: PLANAR_ELBOW.forward(q[:2])) > 1e-2
-    assert furthest(held, lambda q: PLANAR_ELBOW.forward(q[:2])) < 1e-7
+    assert largest_displacement(free, lambda q: PLANAR_ELBOW.forward(q[:2])) > 1e-2
+    assert largest_displacement(held, lambda q: PLANAR_ELBOW.forward(q[:2])) < 1e-7
     assert held.max_error() < 1e-7
 
 
@@ -111,8 +111,8 @@ def test_an_axis_stays_while_the_tip_moves_along_a_circle():
     scheme = fp.Balanced(0.6, np.ones(7), null_damping=5.0)
     free = fp.simulate(PANDA, circle, scheme, READY, dt=1e-2)
     held = fp.simulate(PANDA, circle, scheme, READY, dt=1e-2, stack=fp.Stack(fp.PositionTask(), fp.AxisTask()))
-    assert furthest(free, lambda q: PANDA.forward(q)[:3, 2]) > 1e-2
-    assert furthest(held, lambda q: PANDA.forward(q)[:3, 2]) < 1e-7
+    assert largest_displacement(free, lambda q: PANDA.forward(q)[:3, 2]) > 1e-2
+    assert largest_displacement(held, lambda q: PANDA.forward(q)[:3, 2]) < 1e-7
     assert held.max_error() < 1e-7
 
 
@@ -142,10 +142,10 @@ def test_joint_centring_in_a_motion():
 @pytest.mark.parametrize("name", sorted(SCHEMES))
 def test_singular_postures_are_damped_on_request(name):
     straight, zero = np.zeros(4), np.zeros(4)
-    asked = (straight, zero, PLANAR.forward(straight), [0.1, 0.0], [0.1, 0.0])
+    arguments = (straight, zero, PLANAR.forward(straight), [0.1, 0.0], [0.1, 0.0])
     with pytest.raises(fp.ResolutionError):
-        SCHEMES[name](4).resolve(PLANAR, *asked)
-    damped = SCHEMES[name](4, singular_radius=0.02).resolve(PLANAR, *asked)
+        SCHEMES[name](4).resolve(PLANAR, *arguments)
+    damped = SCHEMES[name](4, singular_radius=0.02).resolve(PLANAR, *arguments)
     assert np.linalg.norm(damped) < 10
 
 

@@ -49,15 +49,15 @@ def schemes(n, damping):
 @pytest.fixture(scope="module")
 def page(tmp_path_factory):
     """The page, by file://, with its clock stopped; nothing may complain."""
-    complaints = []
+    errors = []
     with opened(tmp_path_factory.mktemp("browser"), 1280, 800) as page:
-        page.on("console", lambda message: complaints.append(message.text))
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.on("request", lambda request: complaints.append(request.url) if "http" in request.url else None)
+        page.on("console", lambda message: errors.append(message.text))
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.on("request", lambda request: errors.append(request.url) if "http" in request.url else None)
         page.goto(PAGE.as_uri())
         page.wait_for_function("window.fpbm")
         yield page
-    assert complaints == []
+    assert errors == []
 
 
 def begin(page, arm, **settings):

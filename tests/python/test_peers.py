@@ -97,12 +97,12 @@ def pinocchio(robot: Robot) -> Kinematics:
     if robot.urdf is not None:
         path, tip = robot.urdf
         whole = pin.buildModelFromUrdf(path)
-        way = []
+        chain_joints = []
         joint = whole.frames[whole.getFrameId(tip)].parentJoint
         while joint > 0:
-            way.append(joint)
+            chain_joints.append(joint)
             joint = whole.parents[joint]
-        others = [joint for joint in range(1, whole.njoints) if joint not in way]
+        others = [joint for joint in range(1, whole.njoints) if joint not in chain_joints]
         model = pin.buildReducedModel(whole, others, pin.neutral(whole))
         end = model.getFrameId(tip)
     else:
@@ -225,9 +225,9 @@ def random_robot(rng: np.random.Generator) -> Robot:
 
 def states(links: list[Link], count: int, seed: int = 1) -> Iterator[tuple[Array, Array]]:
     rng = np.random.default_rng(seed)
-    reach = np.where([link.prismatic for link in links], 1.0, np.pi)
+    half_range = np.where([link.prismatic for link in links], 1.0, np.pi)
     for _ in range(count):
-        yield rng.uniform(-reach, reach), rng.uniform(-2.0, 2.0, len(links))
+        yield rng.uniform(-half_range, half_range), rng.uniform(-2.0, 2.0, len(links))
 
 
 def deviation(robot: Robot, peer: Kinematics, count: int) -> float:

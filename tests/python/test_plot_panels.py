@@ -165,8 +165,8 @@ def test_arm_in_space() -> None:
     run = a_run_in_space()
     arm = panels(run.plot(panels=["arm"]))["Arm"]
     assert (arm.get_xlabel(), arm.get_ylabel(), arm.get_zlabel()) == ("x [m]", "y [m]", "z [m]")
-    reach = np.diff([arm.get_xlim(), arm.get_ylim(), arm.get_zlim()])[:, 0]
-    np.testing.assert_allclose(arm.get_box_aspect() / reach, arm.get_box_aspect()[0] / reach[0])
+    extent = np.diff([arm.get_xlim(), arm.get_ylim(), arm.get_zlim()])[:, 0]
+    np.testing.assert_allclose(arm.get_box_aspect() / extent, arm.get_box_aspect()[0] / extent[0])
 
 
 def test_arm_in_the_plane() -> None:

@@ -109,11 +109,11 @@ def test_every_vertex_of_a_preset_is_inside_its_capsules(name: str) -> None:
             each = [(moved(ours[number], a), moved(ours[number], b), radius) for a, b, radius in capsules[number, link]]
             for part in parts:
                 points = moved(theirs[number] @ frame, part.points)
-                room = np.max([radius - part.sizes - distances(points, a, b) for a, b, radius in each], axis=0)
-                loose[link] = min(loose[link], np.min(room))
-    for link, room in loose.items():
-        assert room >= 0.0, (link, room)
-        assert len(capsules[places[link][0], link]) > 1 or room <= ROUNDED + SLACK.get(name, 0.0), (link, room)
+                slack = np.max([radius - part.sizes - distances(points, a, b) for a, b, radius in each], axis=0)
+                loose[link] = min(loose[link], np.min(slack))
+    for link, slack in loose.items():
+        assert slack >= 0.0, (link, slack)
+        assert len(capsules[places[link][0], link]) > 1 or slack <= ROUNDED + SLACK.get(name, 0.0), (link, slack)
 
 
 # Franka's collision meshes of the Panda are convex, and the meshes of links 5 and 7 do meet: the links do not.

@@ -154,9 +154,9 @@ def one_figure(paper: cases.Paper, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_second_run_overwrites_its_own_files_only(tmp_path: Path) -> None:
     (tmp_path / "notes.txt").write_text("mine")
     (tmp_path / "fig2.png").write_text("old")
-    said: list[str] = []
-    first = {file: file.read_bytes() for file in reproduce(tmp_path, say=said.append).files}
-    assert said == ["running 18 cases", "drawing Fig. 2", "checking the claims"]
+    reports: list[str] = []
+    first = {file: file.read_bytes() for file in reproduce(tmp_path, say=reports.append).files}
+    assert reports == ["running 18 cases", "drawing Fig. 2", "checking the claims"]
     second = {file: file.read_bytes() for file in reproduce(tmp_path).files}
     assert first == second
     assert {file.name for file in tmp_path.iterdir()} == {"notes.txt", "fig2.png", "fig2.pdf", "report.md"}

@@ -66,10 +66,10 @@ class Case:
             self.W = np.diag(self.weights)
 
     def resolve(self, scheme: fp.Scheme) -> np.ndarray:
-        asked = (self.q, self.qd, self.x, self.xd, self.xdd)
-        resolved = scheme.resolve(self.arm, *asked, task=self.task)
+        state = (self.q, self.qd, self.x, self.xd, self.xdd)
+        resolved = scheme.resolve(self.arm, *state, task=self.task)
         known = self.arm.kinematics(self.q, self.qd, task=self.task)
-        np.testing.assert_array_equal(scheme.resolve(known, *asked), resolved)
+        np.testing.assert_array_equal(scheme.resolve(known, *state), resolved)
         return resolved
 
 
@@ -324,15 +324,15 @@ def test_custom_kinematics_are_resolved(q0):
     position = fp.Kinematics([0.0, 0.0, 3.0], J, 0 * J)
     pose = fp.Kinematics([0.0, 0.0, 3.0], J, 0 * J, task="pose")
     scheme = fp.FPBM(0.5, np.ones(4), 1.0, 1.0)
-    asked = (q0, qd, [0.0, 0.0, -3.0], np.zeros(3), np.zeros(3))
-    straight = J @ scheme.resolve(position, *asked)
-    round_the_other_way = J @ scheme.resolve(pose, *asked)
-    np.testing.assert_allclose(straight - round_the_other_way, [0, 0, -2 * np.pi], atol=1e-12)
+    state = (q0, qd, [0.0, 0.0, -3.0], np.zeros(3), np.zeros(3))
+    straight = J @ scheme.resolve(position, *state)
+    shorter_rotation = J @ scheme.resolve(pose, *state)
+    np.testing.assert_allclose(straight - shorter_rotation, [0, 0, -2 * np.pi], atol=1e-12)
 
     without_rate = fp.Kinematics([0.0, 0.0, 3.0], J)
     np.testing.assert_allclose(J @ fp.MVN().resolve(without_rate, q0, qd, [0, 0, 0], [1, 2, 3]), [1, 2, 3], atol=1e-12)
     with pytest.raises(ValueError, match="Jd: must be given for an acceleration-level scheme"):
-        scheme.resolve(without_rate, *asked)
+        scheme.resolve(without_rate, *state)
 
 
 @pytest.mark.parametrize(

@@ -118,13 +118,13 @@ def test_a_bag_is_written_atomically(error, tmp_path, monkeypatch):
 
     write, count = Writer.write, []
 
-    def breaks(self, *message):
+    def failing_write(self, *message):
         count.append(message)
         if len(count) > 20:
             raise error
         write(self, *message)
 
-    monkeypatch.setattr(Writer, "write", breaks)
+    monkeypatch.setattr(Writer, "write", failing_write)
     with pytest.raises(type(error)):
         in_the_plane().to_rosbag(tmp_path / "bag")
     assert os.listdir(tmp_path) == []

@@ -114,15 +114,15 @@ def test_followers_keep_their_bounds(seed):
             fp.Joint(lower=low, upper=high, velocity=rng.uniform(1, 5), acceleration=5, mimic=(0, ratio, offset))
         )
     limits = fp.SerialArm(joints).limits
-    room = []
+    slack = []
     for joint in joints:
         _, ratio, offset = joint.mimic or (0, 1, 0)
         ends = sorted([ratio * limits.lower[0] + offset, ratio * limits.upper[0] + offset])
-        room.append([ends[0] - joint.lower, joint.upper - ends[1]])
-        room[-1] += [joint.velocity - abs(ratio) * limits.velocity[0]]
-        room[-1] += [joint.acceleration - abs(ratio) * limits.acceleration[0]]
-    assert np.min(room) > -1e-12
-    np.testing.assert_allclose(np.min(room, axis=0)[2:], 0, atol=1e-12)  # Not narrower than necessary.
+        slack.append([ends[0] - joint.lower, joint.upper - ends[1]])
+        slack[-1] += [joint.velocity - abs(ratio) * limits.velocity[0]]
+        slack[-1] += [joint.acceleration - abs(ratio) * limits.acceleration[0]]
+    assert np.min(slack) > -1e-12
+    np.testing.assert_allclose(np.min(slack, axis=0)[2:], 0, atol=1e-12)  # Not narrower than necessary.
 
 
 def test_a_joint_without_range_is_named():

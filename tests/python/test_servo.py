@@ -59,11 +59,11 @@ def servo(shared):
     return shared
 
 
-def says(servo):
+def readout(servo):
     return servo._readout._status.content + servo._readout._table.content
 
 
-def until(check):
+def wait_until(check):
     """Waits until a check holds, as long as a busy machine may need."""
     end = time.monotonic() + 60
     while not check():
@@ -83,21 +83,23 @@ def test_a_handle_sets_a_target(which, task):
             x += [-0.3, 0.1, 0.2][: len(x)]
         servo.target = x
         np.testing.assert_allclose(servo.target, x, atol=1e-9)
-        until(lambda: np.abs(servo.tip - x).max() < 1e-3)
-        for lie in (np.nan * x, [0.0]):
+        wait_until(lambda: np.abs(servo.tip - x).max() < 1e-3)
+        for invalid in (np.nan * x, [0.0]):
             with pytest.raises(ValueError, match=r"target|entries|shape"):
-                servo.target = lie
+                servo.target = invalid
 
 
 def test_the_status_of_the_arm_is_reported(servo):
-    until(lambda: "the whole task is executed" in says(servo))
+    wait_until(lambda: "the whole task is executed" in readout(servo))
     servo.target = [8.0, 3.0]
-    until(lambda: "a lower level has stopped. The tip follows as fast as the joint limits admit." in says(servo))
-    until(lambda: "the arm stops. Drag the handle into the workspace" in says(servo))
+    wait_until(
+        lambda: "a lower level has stopped. The tip follows as fast as the joint limits admit." in readout(servo)
+    )
+    wait_until(lambda: "the arm stops. Drag the handle into the workspace" in readout(servo))
     assert servo.status is fp.Status.STALLED
-    assert "100 %" in says(servo)
+    assert "100 %" in readout(servo)
     servo.target = [1.5, 2.0]
-    until(lambda: "the whole task is executed" in says(servo) and "0.000 m" in says(servo))
+    wait_until(lambda: "the whole task is executed" in readout(servo) and "0.000 m" in readout(servo))
     np.testing.assert_allclose(servo.tip, [1.5, 2.0], atol=1e-3)
     shown = np.array(servo._chart._plot.data)
     assert shown.shape == (5, 200)
@@ -106,18 +108,18 @@ def test_the_status_of_the_arm_is_reported(servo):
 
 def test_stop_resume_and_restart(servo):
     servo.target = [1.0, 2.0]
-    until(lambda: servo.tick and np.abs(servo.tick.qd).max() > 0.1)
+    wait_until(lambda: servo.tick and np.abs(servo.tick.qd).max() > 0.1)
     servo.stop()
     assert servo._button.label == "continue"
-    until(lambda: "stopped: the arm is at rest" in says(servo))
+    wait_until(lambda: "stopped: the arm is at rest" in readout(servo))
     stopped = servo.q
     time.sleep(0.2)
     np.testing.assert_array_equal(servo.q, stopped)
     servo.resume()
     assert servo._button.label == "stop"
-    until(lambda: np.abs(servo.tip - [1.0, 2.0]).max() < 1e-3)
+    wait_until(lambda: np.abs(servo.tip - [1.0, 2.0]).max() < 1e-3)
     servo.restart()
-    until(lambda: servo.tick is not None)
+    wait_until(lambda: servo.tick is not None)
     np.testing.assert_allclose(servo.q, BENT, atol=1e-6)
     np.testing.assert_allclose(servo.target, PLANAR.forward(BENT), atol=1e-9)
 
@@ -131,17 +133,17 @@ def test_the_page_chooses_schemes(servo):
     assert isinstance(servo.scheme, fp.WMVN)
     controls._weights[0].value = -1.0
     controls._on_update(CLICK)
-    until(lambda: "rejected: weights" in says(servo))
+    wait_until(lambda: "rejected: weights" in readout(servo))
     controls._reset(fpbm(4))
-    until(lambda: "rejected" not in says(servo))
+    wait_until(lambda: "rejected" not in readout(servo))
     assert servo.scheme == fpbm(4)
 
 
 def test_missing_bounds_are_reported():
     with a_servo(limits=None) as servo:
         servo.target = [1.0, 2.0]
-        until(lambda: np.abs(servo.tip - [1.0, 2.0]).max() < 1e-3)
-        until(lambda: says(servo).count("no bound") == 3)
+        wait_until(lambda: np.abs(servo.tip - [1.0, 2.0]).max() < 1e-3)
+        wait_until(lambda: readout(servo).count("no bound") == 3)
         assert "speed (no bound)" in str(servo._chart._plot.series)
 
 
@@ -149,20 +151,20 @@ def test_the_arm_avoids_a_dragged_obstacle():
     links = [fp.Capsule(i, [0, 0, 0], [1, 0, 0], 0.05, f"link {i}") for i in range(1, 5)]
     around = [fp.Capsule(0, [2.2, 0.3, -1], [2.2, 0.3, 1], 0.1, "post"), fp.HalfSpace([0, 1, 0], -2, name="wall")]
     with a_servo(clearance=fp.Clearance(links, around)) as servo:
-        until(lambda: servo.tick is not None)
+        wait_until(lambda: servo.tick is not None)
         ((place, grip),) = servo._scene._grips  # Not the wall's.
         np.testing.assert_allclose(place, [2.2, 0.3, 0])
         servo.target = [2.2, 0.0]
-        until(lambda: "Drag the handle around the nearest shape." in says(servo))
-        until(lambda: f"{servo.tick.nearest.distance:.3f} m" in says(servo))  # The arm still brakes.
-        assert "post" in says(servo)
+        wait_until(lambda: "Drag the handle around the nearest shape." in readout(servo))
+        wait_until(lambda: f"{servo.tick.nearest.distance:.3f} m" in readout(servo))  # The arm still brakes.
+        assert "post" in readout(servo)
         servo.target = [2.6, 2.4]
         grip.position = np.array([2.2, 0.8, 0.0])
         servo._loop.drag("post", grip.position - place)
-        until(lambda: np.abs(servo._scene._shapes._obstacles[0].position - grip.position).max() < ALIKE)
+        wait_until(lambda: np.abs(servo._scene._shapes._obstacles[0].position - grip.position).max() < ALIKE)
         assert servo.tick.nearest.distance >= 0.01 - 1e-9
         servo.restart()
-        until(lambda: np.abs(servo._scene._shapes._obstacles[0].position - place).max() < ALIKE)
+        wait_until(lambda: np.abs(servo._scene._shapes._obstacles[0].position - place).max() < ALIKE)
         np.testing.assert_allclose(grip.position, place)
 
 
@@ -207,8 +209,8 @@ def test_each_task_of_a_frame_has_a_handle(stacked):
         "elbow": stacked.target["elbow"] - [0.0, 0.0, 0.05],
         "turn": fp.rotation([0.0, 0.2, 0.1]) @ stacked.target["turn"],
     }
-    until(lambda: np.abs(stacked.tip["place"] - stacked.target["place"]).max() < 1e-3)
-    until(lambda: np.abs(stacked.tick.qd).max() < 1e-3)
+    wait_until(lambda: np.abs(stacked.tip["place"] - stacked.target["place"]).max() < 1e-3)
+    wait_until(lambda: np.abs(stacked.tick.qd).max() < 1e-3)
     for name in ("upright", "place", "turn"):
         np.testing.assert_allclose(handles[name].target, stacked.target[name], atol=1e-9)
     tip, elbow = stacked.tip["place"], stacked.tip["elbow"]
@@ -228,27 +230,27 @@ def test_targets_of_a_stack_are_a_dictionary(stacked):
     np.testing.assert_array_equal(stacked.target["home"], READY + 0.1)
     for name in ("upright", "elbow", "turn"):
         np.testing.assert_array_equal(stacked.target[name], before[name])
-    for lie, words in [
+    for invalid, words in [
         ({"palce": before["place"]}, "task = 'palce': must be one of .*; did you mean 'place'"),
         ({"upright": [0, 0, 0]}, "target of 'upright': must be finite"),
         ({"place": [0, 0, np.nan]}, "target of 'place': must be finite"),
         ([0, 0, 0], "target = .*: must be a dictionary of points by task names"),
     ]:
         with pytest.raises(ValueError, match=words):
-            stacked.target = lie
+            stacked.target = invalid
     with a_servo() as servo, pytest.raises(ValueError, match=r"target = .*: must be a point of the tip"):
         servo.target = {"tip": [1, 2]}
 
 
 def test_the_status_of_each_task_and_level_is_reported(stacked):
-    until(lambda: "the whole task is executed" in says(stacked))
+    wait_until(lambda: "the whole task is executed" in readout(stacked))
     levels = ["upright, place", "elbow", "turn", "home"]
     for text in (*(f"scale of {level}" for level in levels), *(f"from {name} to handle" for name in stacked.tip)):
-        assert (text in says(stacked)) == ("home to" not in text), text
+        assert (text in readout(stacked)) == ("home to" not in text), text
     stacked.target = {"place": stacked.target["place"] + [2.0, 0, 0]}  # An unreachable target.
-    until(lambda: "Drag the handle into the workspace" in says(stacked))
+    wait_until(lambda: "Drag the handle into the workspace" in readout(stacked))
     frame = stacked._loop.frame("place")[:3, 3]
-    assert f"{np.linalg.norm(stacked.target['place'] - frame):.3f} m" in says(stacked)
+    assert f"{np.linalg.norm(stacked.target['place'] - frame):.3f} m" in readout(stacked)
     labels = [series["label"] for series in stacked._chart._plot.series]
     assert labels == ["t [s]", "speed", "acceleration", "jerk", *(f"scale of {level}" for level in levels)]
     assert len(stacked._chart._plot.data) == len(labels)
@@ -262,13 +264,13 @@ def test_schemes_with_a_stack_have_no_gains(stacked):
         controls._on_update(SimpleNamespace(client="somebody", target=controls._kind))
         assert type(stacked.scheme).__name__ == kind
         assert not any(controls._sliders[name].visible for name in ("k1", "k2", "k"))
-    assert "rejected" not in says(stacked)
+    assert "rejected" not in readout(stacked)
     for name, x in target.items():
         np.testing.assert_array_equal(stacked.target[name], x)
 
 
 def test_simulated_time_keeps_pace_with_the_clock(servo):
-    until(lambda: servo.tick is not None)
+    wait_until(lambda: servo.tick is not None)
     begin, moment = time.perf_counter(), servo._loop.time
     time.sleep(2.0)
     passed = time.perf_counter() - begin
@@ -312,8 +314,8 @@ def test_bad_arguments(change, words):
 
 
 def test_a_port_in_use():
-    with socket.create_server(("127.0.0.1", 0)) as taken:
-        port = taken.getsockname()[1]
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = server.getsockname()[1]
         with pytest.raises(OSError, match=f"port {port} is in use"):
             a_servo(port=port)
 
@@ -330,9 +332,9 @@ print("closed")
 def test_the_address_is_printed_and_ctrl_c_closes_the_server():
     command = [sys.executable, "-c", SCRIPT]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as child:
-        said = child.stdout.readline()
-        assert said, child.stderr.read()
-        with urllib.request.urlopen(said.removesuffix(": Ctrl-C stops the server.\n")) as page:
+        printed = child.stdout.readline()
+        assert printed, child.stderr.read()
+        with urllib.request.urlopen(printed.removesuffix(": Ctrl-C stops the server.\n")) as page:
             assert b"<html" in page.read()
         child.send_signal(signal.SIGINT)
         rest, errors = child.communicate(timeout=30)

@@ -54,13 +54,13 @@ def play(loop, clock, seconds, frame=FRAME):
     return ticks
 
 
-def moved(x, way):
+def moved(x, displacement):
     """A target, moved by so much [m]."""
     x = np.array(x)
     if x.shape == (4, 4):
-        x[: len(way), 3] += way
+        x[: len(displacement), 3] += displacement
     else:
-        x[: len(way)] += way
+        x[: len(displacement)] += displacement
     return x
 
 
@@ -90,13 +90,13 @@ def test_limits_are_kept_for_any_handle_jump(which, task, data):
     size = 3 if which == "panda" else 2
     schemes = [fp.MAN(null_damping=1), fpbm(len(q0), joint_centring=1), fp.WMVN(np.arange(1, len(q0) + 1), k=5)]
     for _ in range(data.draw(st.integers(3, 12))):
-        way = np.array(data.draw(st.lists(st.floats(-1, 1), min_size=size, max_size=size)))
-        assert loop.push(moved(start, data.draw(st.sampled_from([0.1, 0.5, 5.0])) * way))
-        deed = data.draw(st.sampled_from(["", "", "stop", "resume", "scheme"]))
-        if deed == "scheme":
+        displacement = np.array(data.draw(st.lists(st.floats(-1, 1), min_size=size, max_size=size)))
+        assert loop.push(moved(start, data.draw(st.sampled_from([0.1, 0.5, 5.0])) * displacement))
+        action = data.draw(st.sampled_from(["", "", "stop", "resume", "scheme"]))
+        if action == "scheme":
             loop.scheme = data.draw(st.sampled_from(schemes))
-        elif deed:
-            getattr(loop, deed)()
+        elif action:
+            getattr(loop, action)()
         ticks += play(loop, clock, 0.6, data.draw(st.sampled_from([0.0005, 0.01, FRAME, 0.1])))
     kept(loop, q0, ticks)
     shares = loop.strip.shares
@@ -290,9 +290,9 @@ def test_a_dragged_obstacle_moves_at_a_bounded_speed():
     loop.push([2.6, 2.4])
     play(loop, clock, 3)
     there = loop.tip
-    for way in ([0.0, 0.6, 0.0], [-0.3, 0.6, 0.0], [0.0, 0.0, 0.0]):
+    for displacement in ([0.0, 0.6, 0.0], [-0.3, 0.6, 0.0], [0.0, 0.0, 0.0]):
         before = loop.clearance.obstacles[0].a
-        loop.drag("post", way)
+        loop.drag("post", displacement)
         for _ in range(60):
             nearest = [tick.nearest.distance for tick in play(loop, clock, FRAME)]
             now = loop.clearance.obstacles[0].a
@@ -300,7 +300,7 @@ def test_a_dragged_obstacle_moves_at_a_bounded_speed():
             assert min(nearest) >= loop.clearance.margin - 1e-3
             before = now
         play(loop, clock, 2)
-        np.testing.assert_allclose(loop.clearance.obstacles[0].a, post().a + way, atol=1e-12)
+        np.testing.assert_allclose(loop.clearance.obstacles[0].a, post().a + displacement, atol=1e-12)
     play(loop, clock, 3)
     np.testing.assert_allclose(loop.tip, there, atol=1e-4)
 
@@ -334,8 +334,8 @@ def test_invalid_arguments_are_rejected():
     with pytest.raises(ValueError, match="dt"):
         a_loop("panda", "position", targets=other, dt=0.002)
     loop, clock = a_loop()
-    for lie in (np.full((4, 4), np.nan), np.zeros((4, 4)), np.diag([1, 1, -1, 1.0])):
-        assert not loop.push(lie)
+    for invalid in (np.full((4, 4), np.nan), np.zeros((4, 4)), np.diag([1, 1, -1, 1.0])):
+        assert not loop.push(invalid)
     with pytest.raises(ValueError, match="shape"):
         loop.push([0, 0, 0])
     scheme = loop.scheme
@@ -349,16 +349,16 @@ def test_invalid_arguments_are_rejected():
 def test_simultaneous_threads_are_safe():
     loop = ServoLoop(PANDA, fpbm(7), READY)  # By the true clock.
     start, errors = loop.target, []
-    deeds = [loop.advance, loop.stop, loop.resume, lambda: loop.push(start), lambda: loop.status, loop.restart]
+    actions = [loop.advance, loop.stop, loop.resume, lambda: loop.push(start), lambda: loop.status, loop.restart]
 
-    def work(deed):
+    def work(action):
         try:
             for _ in range(200):
-                deed()
+                action()
         except Exception as error:
             errors.append(error)
 
-    threads = [threading.Thread(target=work, args=(deed,)) for deed in deeds]
+    threads = [threading.Thread(target=work, args=(action,)) for action in actions]
     for thread in threads:
         thread.start()
     for thread in threads:

@@ -83,11 +83,11 @@ def test_limits_are_kept_for_any_handle_jump(data):
     for _ in range(data.draw(st.integers(3, 8))):
         for name in data.draw(st.sets(st.sampled_from(["place", "elbow", "upright"]))):
             loop.push(start[name] + data.draw(st.sampled_from([0.1, 0.5, 5.0])) * data.draw(unit), name)
-        deed = data.draw(st.sampled_from(["", "", "stop", "resume", "scheme"]))
-        if deed == "scheme":
+        action = data.draw(st.sampled_from(["", "", "stop", "resume", "scheme"]))
+        if action == "scheme":
             loop.scheme = data.draw(st.sampled_from(schemes))
-        elif deed:
-            getattr(loop, deed)()
+        elif action:
+            getattr(loop, action)()
         ticks += play(loop, clock, 0.6, data.draw(st.sampled_from([0.0005, 0.01, FRAME, 0.1])))
     kept(loop, READY, ticks)
     assert ((loop.strip.shares[3:] >= 0) & (loop.strip.shares[3:] <= 1)).all()
@@ -97,9 +97,9 @@ def test_one_level_moves_as_the_loop_of_that_task():
     clock = Clock()
     alone = ServoLoop(PANDA, fpbm(7), READY, clock=clock)
     loop, other = a_loop(fp.Stack(fp.PositionTask(name="place")))
-    for way in ([0.1, 0.5, 0.0], [-0.2, 0.1, 0.1]):
-        alone.push(moved(alone.target, way))
-        loop.push(moved(loop.target["place"], way), "place")
+    for displacement in ([0.1, 0.5, 0.0], [-0.2, 0.1, 0.1]):
+        alone.push(moved(alone.target, displacement))
+        loop.push(moved(loop.target["place"], displacement), "place")
         play(alone, clock, 0.7)
         play(loop, other, 0.7)
         np.testing.assert_allclose(loop.q, alone.q, atol=1e-9)

@@ -335,12 +335,12 @@ def test_damped_motions_are_complete():
 
 
 def test_progress_is_reported(arm, reference):
-    told = []
-    same(large(arm, progress=lambda done, total: told.append((done, total))), reference)
-    assert len(told) > 10
-    assert told == sorted(set(told))
-    assert told[-1] == (600, 600)
-    assert all(total == 600 for _, total in told)
+    reports = []
+    same(large(arm, progress=lambda done, total: reports.append((done, total))), reference)
+    assert len(reports) > 10
+    assert reports == sorted(set(reports))
+    assert reports[-1] == (600, 600)
+    assert all(total == 600 for _, total in reports)
 
 
 def test_progress_bar(arm, reference, capsys, monkeypatch):
@@ -355,11 +355,11 @@ def test_progress_bar(arm, reference, capsys, monkeypatch):
 
 
 def test_an_exception_of_progress_ends_the_sweep(arm):
-    def refuse(done, total):
+    def fail(done, total):
         raise RuntimeError("enough")
 
     with pytest.raises(RuntimeError, match="enough"):
-        large(arm, progress=refuse)
+        large(arm, progress=fail)
 
 
 class Broken(Executor):
@@ -423,7 +423,7 @@ def test_interruption_keeps_finished_motions(arm):
             assert np.isnan(values[~sweep.done]).all()
 
 
-class Pressed(ThreadPoolExecutor):
+class Interrupting(ThreadPoolExecutor):
     """Ctrl-C is pressed in the midst of each submission."""
 
     submitted = 0
@@ -437,7 +437,7 @@ class Pressed(ThreadPoolExecutor):
 @pytest.mark.usefixtures("ctrl_c")
 def test_ctrl_c_leaves_no_lock_acquired(arm):
     """It ends the sweep after the submission, and not within, where it might hold a lock of the executor's."""
-    with Pressed(2) as threads:
+    with Interrupting(2) as threads:
         with pytest.raises(fp.SweepInterrupted):
             large(arm, executor=threads)
         assert threads.submitted == 1

@@ -33,12 +33,14 @@ def assert_within(x, xd, xdd, *, velocity, acceleration, jerk):
 
 def shortest(ruckig, x, xd, xdd, target, bounds):
     """Duration of Ruckig's motion to a target at rest [s]."""
-    wanted = ruckig.InputParameter(1)
-    wanted.current_position, wanted.current_velocity, wanted.current_acceleration = [x], [xd], [xdd]
-    wanted.target_position, wanted.target_velocity, wanted.target_acceleration = [target], [0.0], [0.0]
-    wanted.max_velocity, wanted.max_acceleration, wanted.max_jerk = ([value * (1 + 1e-9)] for value in bounds.values())
+    problem = ruckig.InputParameter(1)
+    problem.current_position, problem.current_velocity, problem.current_acceleration = [x], [xd], [xdd]
+    problem.target_position, problem.target_velocity, problem.target_acceleration = [target], [0.0], [0.0]
+    problem.max_velocity, problem.max_acceleration, problem.max_jerk = (
+        [value * (1 + 1e-9)] for value in bounds.values()
+    )
     motion = ruckig.Trajectory(1)
-    assert ruckig.Ruckig(1).calculate(wanted, motion) == ruckig.Result.Working
+    assert ruckig.Ruckig(1).calculate(problem, motion) == ruckig.Result.Working
     return motion.duration
 
 
@@ -163,8 +165,8 @@ def test_orientations_end_at_rest_without_chatter(bounds, longest):
         assert not away[-1]
         alone = fp.TargetFilter(np.zeros(3), **dict(zip(LINEAR, bounds)))
         alone.push(fp.rotation_vector(target[:3, :3]))
-        way = moved(alone, 5000)
-        ratios.append((np.flatnonzero(away)[-1] + 1) / arrivals(*way, fp.rotation_vector(target[:3, :3])).max())
+        single = moved(alone, 5000)
+        ratios.append((np.flatnonzero(away)[-1] + 1) / arrivals(*single, fp.rotation_vector(target[:3, :3])).max())
     print(f"of the largest angle's time: {np.mean(ratios):.3f}, at most {max(ratios):.3f}")
     assert max(ratios) < longest
 
@@ -188,8 +190,8 @@ def test_a_twist_holds_until_the_timeout():
     x, xd, _ = moved(target_filter, 500)
     np.testing.assert_array_equal(xd[75], twist)
     np.testing.assert_array_equal(xd[-1], 0)
-    way = x[-1][0, 3] - x[0][0, 3]
-    assert way == pytest.approx(0.2 * (0.08 + (0.2 / 3 + 3 / 100) / 2), abs=0.2 * DT * 1.01)
+    single = x[-1][0, 3] - x[0][0, 3]
+    assert single == pytest.approx(0.2 * (0.08 + (0.2 / 3 + 3 / 100) / 2), abs=0.2 * DT * 1.01)
 
 
 def test_a_tracker_follows_the_filter(arm, q0):

@@ -25,9 +25,11 @@ def is_viable(limits, q, qd):
     """Whether each joint can still stop in time, by the envelope -A h/2 + sqrt(2 A (d + A h^2/8)) at distance d."""
     c = limits.acceleration * DT / 2
 
-    def stops(way, speed):
+    def stops(distance, speed):
         p = speed + c
-        return (way >= 0) & ((p <= 0) | (p**2 <= 2 * limits.acceleration * (way + c**2 / (2 * limits.acceleration))))
+        return (distance >= 0) & (
+            (p <= 0) | (p**2 <= 2 * limits.acceleration * (distance + c**2 / (2 * limits.acceleration)))
+        )
 
     return (np.abs(qd) <= limits.velocity) & stops(limits.upper - q, qd) & stops(q - limits.lower, -qd)
 
@@ -216,9 +218,9 @@ def test_self_motion_comes_to_rest(panda, make):
     ],
 )
 def test_unstable_gains_are_rejected(panda, scheme, options, words):
-    with pytest.raises(fp.ParameterError, match=words) as refused:
+    with pytest.raises(fp.ParameterError, match=words) as caught:
         fp.Tracker(panda, scheme, BENT, **options)
-    assert refused.value.name == words.partition(" ")[0]
+    assert caught.value.name == words.partition(" ")[0]
 
 
 @pytest.mark.parametrize(

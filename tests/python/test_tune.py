@@ -102,10 +102,10 @@ def test_tuning_improves_the_baseline(tuning):
     ("before", "words"), [(-2.0, "50 % below the baseline's -2"), (0.0, "against the baseline's 0")]
 )
 def test_objectives_need_not_be_positive(before, words):
-    def sinking(run):
+    def negative_objective(run):
         return before if "null_damping" not in repr(run.scheme) else -3.0
 
-    tuning = quick(sinking, trials=2)
+    tuning = quick(negative_objective, trials=2)
     assert tuning.value == -3.0
     assert words in str(tuning)
     assert np.isnan(tuning.improvement) if before == 0 else tuning.improvement == 0.5
@@ -171,13 +171,13 @@ def test_infeasible_schemes_are_never_returned():
 
 
 def test_an_objective_that_is_not_finite_is_infeasible():
-    def fussy(run):
+    def sometimes_nan(run):
         return np.nan if np.abs(run.qd).max() < 0.3 else np.abs(run.qd).max()
 
-    tuning = quick(fussy)
+    tuning = quick(sometimes_nan)
     assert 0 < tuning.trials.feasible.sum() < 41
     assert tuning.value >= 0.3
-    assert tuning.objective == "fussy"
+    assert tuning.objective == "sometimes_nan"
 
 
 def test_a_baseline_that_is_infeasible():
@@ -263,10 +263,10 @@ def test_text(tuning):
 
 
 def test_progress():
-    told = []
-    quick(progress=lambda done, total: told.append((done, total)))
-    assert told == sorted(set(told))
-    assert told[-1] == (41 + 16, 41 + 16)
+    reports = []
+    quick(progress=lambda done, total: reports.append((done, total)))
+    assert reports == sorted(set(reports))
+    assert reports[-1] == (41 + 16, 41 + 16)
 
 
 @pytest.mark.parametrize("after", [20, 41])

@@ -105,7 +105,7 @@ def write(tmp_path: Path) -> Callable[[str | bytes], Path]:
     return write
 
 
-def refusal(file: Path, tip: str = "tip", base: str | None = None) -> str:
+def error_message(file: Path, tip: str = "tip", base: str | None = None) -> str:
     """The message about a file, which must be one line, soon, and name the file."""
     start = time.process_time()
     with pytest.raises(ValueError, match=r".") as caught:
@@ -390,13 +390,13 @@ GRIPPER = robot(
 
 def test_follower_of_a_joint_outside_the_chain_is_held(write) -> None:
     file = write(GRIPPER)
-    with pytest.warns(UserWarning, match="is held") as said:
+    with pytest.warns(UserWarning, match="is held") as warned:
         joints, tip = read_urdf(file, "pad")
     assert [j.name for j in joints] == ["wrist"]
     assert joints[0].mimic is None
     assert (joints[0].lower, joints[0].upper, joints[0].velocity) == (-1, 2, 3)  # A held joint bounds nothing.
     reason = "it mimics 'finger', which does not move between base and tip"
-    assert [str(warning.message) for warning in said] == [
+    assert [str(warning.message) for warning in warned] == [
         f"{file}: joint 'follower' is held at 0.02 m: {reason}",
         f"{file}: joint 'tilt' is held at 0.72 rad: {reason}",
     ]
@@ -410,9 +410,9 @@ def test_follower_of_a_joint_outside_the_chain_is_held(write) -> None:
 
 
 def test_warning_points_to_the_caller(write) -> None:
-    with pytest.warns(UserWarning, match="is held") as said:
+    with pytest.warns(UserWarning, match="is held") as warned:
         fp.SerialArm.from_urdf(write(GRIPPER), "right")
-    assert said[0].filename == __file__
+    assert warned[0].filename == __file__
 
 
 def test_held_joint_agrees_with_pinocchio(write) -> None:
@@ -444,7 +444,7 @@ def test_follower_is_held_where_the_base_is_below_its_leader(write) -> None:
         (c,), _ = read_urdf(file, "tip", "mid")
     assert c.name == "c"
     np.testing.assert_allclose(c.placement, moved("revolute", [0, 0, 1], 0.3), rtol=0, atol=1e-15)
-    assert refusal(file, "far", "mid") == (
+    assert error_message(file, "far", "mid") == (
         "all joints between base and tip mimic joints elsewhere: 'b': at least one must have a drive: "
         "give another base or tip"
     )
@@ -468,7 +468,7 @@ def with_number(text: str) -> str:
 
 
 ORIGIN = "joint 'a': origin xyz = {!r}: must be 3 finite numbers"
-REFUSED = {
+REJECTED = {
     # Not a URDF.
     "": "line 1: invalid XML: no element found",
     "solid cube": "line 1: invalid XML: syntax error",
@@ -583,9 +583,9 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize(("text", "message"), REFUSED.items(), ids=range(len(REFUSED)))
+@pytest.mark.parametrize(("text", "message"), REJECTED.items(), ids=range(len(REJECTED)))
 def test_invalid_urdf_is_rejected(text: str, message: str, write) -> None:
-    assert refusal(write(text)) == message
+    assert error_message(write(text)) == message
 
 
 @pytest.mark.parametrize(
@@ -607,7 +607,7 @@ def test_invalid_urdf_is_rejected(text: str, message: str, write) -> None:
     ],
 )
 def test_links_with_no_chain_between(tip: str, base: str, message: str, write) -> None:
-    assert refusal(write(TREE), tip, base) == message
+    assert error_message(write(TREE), tip, base) == message
 
 
 @pytest.mark.parametrize(
@@ -710,19 +710,19 @@ HOSTILE = {
 
 @pytest.mark.parametrize(("make", "message"), HOSTILE.values(), ids=HOSTILE)
 def test_malicious_file_is_rejected(make: Callable[[], str | bytes], message: str, write) -> None:
-    assert refusal(write(make())) == message
+    assert error_message(write(make())) == message
 
 
 def test_gigantic_file(tmp_path: Path) -> None:
     file = tmp_path / "big.urdf"
     with open(file, "wb") as out:
         out.truncate(1 << 40)  # A hole, which takes no disk space.
-    assert refusal(file) == f"has more than 16 MiB: {ROBOT_FILE}"
+    assert error_message(file) == f"has more than 16 MiB: {ROBOT_FILE}"
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/zero"), reason="no /dev/zero")
 def test_infinite_file_is_rejected() -> None:
-    assert refusal(Path("/dev/zero")) == f"has more than 16 MiB: {ROBOT_FILE}"
+    assert error_message(Path("/dev/zero")) == f"has more than 16 MiB: {ROBOT_FILE}"
 
 
 def test_64_deep_is_read(write) -> None:
@@ -740,7 +740,7 @@ def test_long_chain(length: int, write) -> None:
     with pytest.raises(ParameterError, match="must be a link"):
         read_urdf(file, links[1] + "?")
     assert time.process_time() - start < 4.0
-    assert refusal(file, links[-1]).startswith("no joints move between base ")
+    assert error_message(file, links[-1]).startswith("no joints move between base ")
 
 
 @settings(max_examples=200, suppress_health_check=[HealthCheck.function_scoped_fixture])

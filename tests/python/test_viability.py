@@ -72,8 +72,8 @@ def their_bounds(states: Array, tick: float) -> Array:
 
 def random_states(rng: np.random.Generator, tick: float) -> Array:
     """Joints and states: a row each, many of them at the limit of stopping in continuous time."""
-    middle, reach = rng.uniform(-3, 3, JOINTS), 10 ** rng.uniform(-1, 0.5, JOINTS)
-    lower, upper = middle - reach, middle + reach
+    middle, half_range = rng.uniform(-3, 3, JOINTS), 10 ** rng.uniform(-1, 0.5, JOINTS)
+    lower, upper = middle - half_range, middle + half_range
     velocity, acceleration = 10 ** rng.uniform(-1, 1, JOINTS), 10 ** rng.uniform(0, 2, JOINTS)
     q = lower + rng.uniform(0, 1, JOINTS) ** rng.choice([1, 4], JOINTS) * (upper - lower)
     fastest = np.minimum(velocity, np.sqrt(2 * acceleration * (upper - q)))

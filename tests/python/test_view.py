@@ -66,7 +66,7 @@ def viewer(shared):
     return shared
 
 
-def say(viewer):
+def readout(viewer):
     return viewer._readout._status.content + viewer._readout._table.content
 
 
@@ -82,10 +82,10 @@ def test_the_shown_run_equals_the_simulation(viewer):
         expected = fp.simulate(arm, path, scheme, q0, dt=0.01, hold=1.0)
         same(viewer.run, expected)
         assert viewer.scheme is scheme
-        assert f"{expected.max_error():.3g} m" in say(viewer)
-        assert f"{np.abs(expected.qd).max():.3g} rad/s" in say(viewer)
-        assert f"{expected.manipulability().min():.3g}" in say(viewer)
-        assert "complete, t = 3 s" in say(viewer)
+        assert f"{expected.max_error():.3g} m" in readout(viewer)
+        assert f"{np.abs(expected.qd).max():.3g} rad/s" in readout(viewer)
+        assert f"{expected.manipulability().min():.3g}" in readout(viewer)
+        assert "complete, t = 3 s" in readout(viewer)
         drawn = viewer._chart._plot.data
         np.testing.assert_array_equal(np.transpose(drawn[1:-1]), expected.qd)
 
@@ -100,7 +100,7 @@ def test_the_arm_is_shown_at_the_selected_time(viewer):
         np.testing.assert_allclose(joints, points[:-1], atol=1e-6)
         np.testing.assert_allclose(viewer._scene._tip.position[:2], run.x[sample], atol=1e-6)
         np.testing.assert_allclose(viewer._scene._path.points[-1, 1, :2], run.x[sample], atol=1e-6)
-        assert f"{np.abs(run.qd[sample]).max():.3g} rad/s" in say(viewer)
+        assert f"{np.abs(run.qd[sample]).max():.3g} rad/s" in readout(viewer)
         line = viewer._chart._plot.data[-1]
         at = viewer._chart._plot.data[0][~np.isnan(line)]
         assert abs(at - moment).min() < 0.02
@@ -125,7 +125,7 @@ def test_the_clearance_is_drawn_and_reported():
             viewer.time = moment
             sample = round(100 * moment)
             nearest = CLEARANCE.nearest(arm, run.q[sample])
-            assert f"{nearest.distance:.3f} m ({' and '.join(nearest.pair)})" in say(viewer)
+            assert f"{nearest.distance:.3f} m ({' and '.join(nearest.pair)})" in readout(viewer)
             points = joint_points(arm, run.q[sample])
             for link, node in shapes._links.items():
                 np.testing.assert_allclose(node.position[:2], points[link - 1], atol=1e-6)
@@ -133,7 +133,7 @@ def test_the_clearance_is_drawn_and_reported():
                 np.testing.assert_allclose(turned[:2], points[link] - points[link - 1], atol=1e-6)
             ends = shapes._gap.points[0]
             assert np.linalg.norm(ends[1] - ends[0]) == pytest.approx(nearest.distance, abs=1e-6)
-        assert f"{run.clearance.min():.3f} m" in say(viewer)
+        assert f"{run.clearance.min():.3f} m" in readout(viewer)
         np.testing.assert_allclose(shapes._obstacles[0].position, [2.2, 0.2, 0], atol=1e-6)
         viewer._chart._quantity.value = label
         viewer._chart.show(viewer._playback)
@@ -142,7 +142,7 @@ def test_the_clearance_is_drawn_and_reported():
         viewer._on_change()
         assert viewer.run.clearance is None
         assert viewer._playback.distances.min() < 0
-        assert "nearest shapes" in say(viewer)
+        assert "nearest shapes" in readout(viewer)
 
 
 def a_stack_run(move=fp.simulate, **how):
@@ -168,10 +168,10 @@ def test_a_run_of_a_stack_is_shown(move):
             errors["hand"] = np.linalg.norm(run.errors["hand"][sample, :3])
             for name, unit in (("wrist", "m"), ("hand", "m"), ("home", "rad")):
                 row = f"error of {name}</td>"
-                assert row in say(viewer)
-                assert f"{errors[name]:.3g} {unit}" in say(viewer).split(row)[1].split("</tr>")[0]
+                assert row in readout(viewer)
+                assert f"{errors[name]:.3g} {unit}" in readout(viewer).split(row)[1].split("</tr>")[0]
         np.testing.assert_allclose(scene._target.points[0, 0], run.x_ref[0], atol=1e-6)
-        assert "tip error" not in say(viewer)
+        assert "tip error" not in readout(viewer)
         assert "error of hand, orientation" in viewer._chart._quantity.options
         viewer._chart._quantity.value = "error of home"
         viewer._chart.show(viewer._playback)
@@ -191,13 +191,13 @@ def test_a_stack_run_without_samples_is_shown():
     none = {name: getattr(run, name)[:0] for name in names}
     status = replace(run.status, code=fp.Status.SINGULAR, time=0.0, q=run.q[0])
     with Viewer(replace(run, q=run.q[:0], status=status, **none), port=0) as viewer:
-        assert "stopped after t = 0 s" in say(viewer)
-        assert "error of hand, orientation" in say(viewer)
+        assert "stopped after t = 0 s" in readout(viewer)
+        assert "error of hand, orientation" in readout(viewer)
 
 
 def test_no_shapes_are_drawn_without_a_clearance(viewer):
     assert viewer._scene._shapes is None
-    assert "nearest shapes" not in say(viewer)
+    assert "nearest shapes" not in readout(viewer)
     assert "distance of the nearest shapes" not in viewer._chart._quantity.options
 
 
@@ -304,7 +304,7 @@ def test_a_motion_that_stops_early(viewer):
     with a_viewer(fp.MVN(), path=out) as viewer:
         assert not viewer.run.status
         assert 0 < viewer.run.status.time < 5
-        assert f"stopped after t = {viewer.run.status.time:g} s: " in say(viewer)
+        assert f"stopped after t = {viewer.run.status.time:g} s: " in readout(viewer)
         viewer.time = 5.0
         assert viewer.time == viewer.run.status.time
         viewer.scheme = fp.MVN(singular_radius=0.02)
@@ -318,7 +318,7 @@ def test_a_motion_without_samples_is_shown(task):
         assert len(viewer.run.t) == 0
         viewer.time = 1.0
         assert viewer.time == 0.0
-        assert "stopped after t = 0 s" in say(viewer)
+        assert "stopped after t = 0 s" in readout(viewer)
         np.testing.assert_allclose(viewer._scene._tip.position, [4, 0, 0], atol=1e-6)
 
 
@@ -330,15 +330,15 @@ def test_invalid_settings_are_rejected_and_the_viewer_continues(viewer):
     viewer._controls._sliders["alpha"].value = 1.5
     viewer._controls._on_update(CLICK)
     assert viewer.run is run
-    assert "not run: alpha = 1.5" in say(viewer)
+    assert "not run: alpha = 1.5" in readout(viewer)
     viewer._controls._sliders["alpha"].value = 0.5
     viewer._controls._on_update(CLICK)
-    assert "complete" in say(viewer)
+    assert "complete" in readout(viewer)
     viewer._controls._sliders["alpha"].value = -1.0
     viewer._controls._on_update(CLICK)
     viewer._controls._sliders["alpha"].value = 0.5  # Back to the shown value.
     viewer._controls._on_update(CLICK)
-    assert "complete" in say(viewer)
+    assert "complete" in readout(viewer)
 
 
 def test_simultaneous_changes_are_safe(viewer):
@@ -357,7 +357,7 @@ def test_simultaneous_changes_are_safe(viewer):
     assert repr(viewer.scheme) == repr(viewer._controls.scheme())
 
 
-def until(check):
+def wait_until(check):
     """Waits until a check holds, as long as a busy machine may need."""
     end = time.monotonic() + 60
     while not check():
@@ -368,7 +368,7 @@ def until(check):
 def test_playing(viewer):
     player = viewer._player
     viewer.play()
-    until(lambda: 0.0 < viewer.time < 3.0)
+    wait_until(lambda: 0.0 < viewer.time < 3.0)
     viewer.pause()
     moment = viewer.time
     time.sleep(0.1)
@@ -376,14 +376,14 @@ def test_playing(viewer):
     player._speed.value = "5 ×"
     viewer.time = 2.9
     viewer.play()
-    until(lambda: viewer.time < 2.9)  # From the start, again.
+    wait_until(lambda: viewer.time < 2.9)  # From the start, again.
     assert player.playing
     player._loop.value = False
-    until(lambda: not player.playing)
+    wait_until(lambda: not player.playing)
     assert viewer.time == 3.0
     player._loop.value = True
     viewer.play()
-    until(lambda: viewer.time < 3.0)
+    wait_until(lambda: viewer.time < 3.0)
     player._speed.value = "1 ×"
 
 
@@ -409,7 +409,7 @@ def test_a_finished_run():
     run = fp.simulate(arm, path, fpbm(8), [0.1, *READY], dt=0.01, hold=0.5, qd0=qd0, task="pose")
     with Viewer(run, port=0) as viewer:
         assert viewer.run is run
-        assert "orientation error" in say(viewer)
+        assert "orientation error" in readout(viewer)
         assert "orientation error" in viewer._chart._quantity.options
         viewer.scheme = fp.MAN()
         same(viewer.run, fp.simulate(arm, path, fp.MAN(), [0.1, *READY], dt=0.01, hold=0.5, qd0=qd0, task="pose"))
@@ -420,7 +420,7 @@ def test_a_finished_run():
 
 def test_reported_text_is_escaped(viewer):
     viewer._readout.refuse("k1 < 0 & <b>")
-    assert "k1 &lt; 0 &amp; &lt;b&gt;" in say(viewer)
+    assert "k1 &lt; 0 &amp; &lt;b&gt;" in readout(viewer)
 
 
 def test_limits_are_kept_on_request():
@@ -573,9 +573,9 @@ def test_meshes_that_are_not_found_are_left_out(file):
     arm = fp.SerialArm.from_urdf(file, tip="hand")
     with pytest.warns(
         UserWarning, match=r"arm.urdf: 1 mesh is not found: package://made_up/meshes/nowhere.stl"
-    ) as said:
+    ) as caught:
         model = Meshes(file, arm, np.zeros(4))
-    assert len(said) == 1
+    assert len(caught) == 1
     assert model.found  # The box and the cylinder.
 
 
@@ -638,10 +638,10 @@ def test_bad_arguments(change, words):
 
 
 def test_a_port_in_use():
-    with socket.socket() as taken:
-        taken.bind(("127.0.0.1", 0))
-        taken.listen()
-        port = taken.getsockname()[1]
+    with socket.socket() as server:
+        server.bind(("127.0.0.1", 0))
+        server.listen()
+        port = server.getsockname()[1]
         with pytest.raises(OSError, match=f"port {port} is in use: choose another port, or 0 for a free port"):
             Viewer(a_run(), port=port)
 
@@ -670,9 +670,9 @@ print("closed")
 def test_the_address_is_printed_and_ctrl_c_closes_the_server(call):
     command = [sys.executable, "-c", SCRIPT.format(call=f"{call}port=0, open_browser=False)")]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as child:
-        said = child.stdout.readline()
-        assert said, child.stderr.read()
-        url = said.removesuffix(": Ctrl-C stops the server.\n")
+        printed = child.stdout.readline()
+        assert printed, child.stderr.read()
+        url = printed.removesuffix(": Ctrl-C stops the server.\n")
         with urllib.request.urlopen(url) as page:
             assert b"<html" in page.read()
         child.send_signal(signal.SIGINT)

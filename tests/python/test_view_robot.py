@@ -31,7 +31,7 @@ def torso(tmp_path, base=None, **held):
     return file, fp.Robot.from_urdf(file, base=base, locked=held)
 
 
-def reach(robot, q0, **how):
+def hand_motion(robot, q0, **how):
     """Both hands along a line each."""
     stack = fp.Stack([fp.PoseTask("left_tool", name="left"), fp.PositionTask("right_tool", name="right")])
     paths = {"left": fp.Line([0.05, 0, 0], 1.0), "right": fp.Line([0, 0, 0.05], 0.5)}
@@ -62,7 +62,7 @@ def test_the_model_has_the_frames_of_the_robot(tmp_path, base):
 
 def test_a_run_of_a_robot_is_shown(tmp_path):
     file, robot = torso(tmp_path)
-    run = reach(robot, TORSO_READY[: robot.dof])
+    run = hand_motion(robot, TORSO_READY[: robot.dof])
     with Viewer(run, port=0) as viewer:
         links, scene = viewer._scene._arm, viewer._scene
         viewer.time = 0.5
@@ -96,7 +96,7 @@ def hands(robot=ROBOT, q0=READY, **how):
     return Servo(robot, scheme, q0, **{"stack": stack, "port": 0, **how})
 
 
-def until(check, seconds=60.0):
+def wait_until(check, seconds=60.0):
     end = time.monotonic() + seconds
     while not check():
         assert time.monotonic() < end, check
@@ -113,7 +113,7 @@ def test_each_hand_has_a_handle():
         start = servo.tip["right_tip"].copy()
         handles["left_tip"]._gizmo.position = goals["left_tip"][:3, 3]
         servo.target = {"left_tip": goals["left_tip"]}
-        until(lambda: np.abs(servo.tip["left_tip"] - goals["left_tip"]).max() < 1e-3)
+        wait_until(lambda: np.abs(servo.tip["left_tip"] - goals["left_tip"]).max() < 1e-3)
         np.testing.assert_allclose(servo.tip["right_tip"], start, atol=1e-3)  # Keeps its own target.
         for name in HANDS:
             np.testing.assert_allclose(handles[name].target, goals[name], atol=1e-6)
@@ -129,7 +129,7 @@ def test_a_slowed_level_is_named():
         goal = servo.target["left_tip"].copy()
         goal[:3, 3] += [0.1, 0.1, 0.15]
         servo.target = {"left_tip": goal}
-        until(lambda: "posture: slowed by higher levels" in servo._readout._status.content)
+        wait_until(lambda: "posture: slowed by higher levels" in servo._readout._status.content)
 
 
 def test_relative_tasks_have_no_handle():
@@ -166,6 +166,6 @@ def test_servo_from_the_command_line(tmp_path, monkeypatch):
 def test_two_hands_in_a_browser(tmp_path):
     with opened(tmp_path, 900, 600) as page, hands() as servo:
         page.goto(servo.url)
-        until(servo._server.get_clients)
+        wait_until(servo._server.get_clients)
         for name in HANDS:
             page.get_by_text(f"from {name} to handle").wait_for()
