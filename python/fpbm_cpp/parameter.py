@@ -89,7 +89,7 @@ class Parameter:
     def _numbers(self, value: Any) -> Any:
         try:
             given = np.asarray(value)
-        except ValueError:  # Rows of different lengths.
+        except ValueError:  # NumPy rejects rows of different lengths.
             given = np.empty(0, dtype=object)
         if given.dtype.kind not in "fiu" or not _fits(given.shape, self.shape):
             raise self._error(value, f"real numbers of shape {self.shape}" if self.shape else "a number")

@@ -42,7 +42,7 @@ class TaskBounds(Data):
         unit="m/s, rad/s",
     )
     acceleration: float = parameter(
-        "Deceleration before lower and upper; for an axis, of the cosine of the angle. Default: the joints' largest.",
+        "Deceleration before lower and upper; for an axis, of the cosine of the angle. Default: as the joints admit.",
         POSITIVE,
         default=inf,
         infinite=True,
