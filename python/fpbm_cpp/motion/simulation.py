@@ -188,7 +188,7 @@ def limit_arguments(options: LimitOptions) -> dict[str, Any]:
 
 
 def without_limits(arm: Arm | Robot, stack: Stack, task: str) -> LimitOptions:
-    """Options of a stack without limits: no stop at unreachable targets, and only damping of the scheme and of levels.
+    """Options of a stack without limits: no stop at unreachable targets; only the scheme and the levels have damping.
 
     error_bound is 1000 arm lengths, which no target exceeds.
     """

@@ -69,7 +69,7 @@ def head_legend(axes: Any, theme: Theme, handles: Sequence[Any] | None = None) -
 
 
 def inner_legend(axes: Any, theme: Theme) -> None:
-    """Legend of a few lines with long names, in the axes, at the place that covers least."""
+    """Legend of a few lines with long names, in the axes, where the legend covers least."""
     _legend(axes, theme, loc="best", labelspacing=0.2, borderpad=0.2)
 
 

@@ -29,7 +29,7 @@ NUMBERS = {
 
 
 def changed(base: Scheme, kind: type[Scheme], values: Mapping[str, Any]) -> Scheme:
-    """A scheme of a kind, with the parameters in `values` and otherwise those of `base`. Raises ValueError."""
+    """A scheme of a kind with the parameters in `values`, and all other parameters of `base`. Raises ValueError."""
     known = {**base._values(), **values}
     return kind(**{name: value for name, value in known.items() if name in parameters(kind)})
 
