@@ -37,7 +37,7 @@ struct MotionScheme {
   std::optional<Joints> rest_posture;  ///< Default: the posture of begin() [rad].
 };
 
-/// The null-space motion from the posture of begin().
+/// The null-space motion. start: posture of begin(), the default rest posture.
 [[nodiscard]] inline fpbm::NullSpace<Eigen::Dynamic> null_space_of(const MotionScheme& scheme,
                                                                    const MotionScheme::Joints& start) {
   auto null_space = fpbm::NullSpace<Eigen::Dynamic>().with_damping(scheme.null_damping);
