@@ -293,7 +293,7 @@ TEST(AllocationWatch, detects_every_form_of_new) {
             kSteps + 1);
 }
 
-TEST(AllocationWatch, sees_malloc_and_its_family) {
+TEST(AllocationWatch, counts_malloc_and_its_variants) {
   if (!AllocationWatch::kSeesMalloc) GTEST_SKIP() << "a sanitizer keeps malloc for itself";
   EXPECT_EQ(planted([] { seen = std::malloc(8), std::free(seen); }).by_malloc, kSteps + 1);
   EXPECT_EQ(planted([] { seen = std::calloc(2, 8), std::free(seen); }).by_malloc, kSteps + 1);
@@ -306,7 +306,7 @@ TEST(AllocationWatch, sees_malloc_and_its_family) {
             kSteps + 1);
 }
 
-TEST(AllocationWatch, sees_what_eigen_allocates) {
+TEST(AllocationWatch, counts_allocations_of_eigen) {
   const AllocationCount count = planted([] {
     const Eigen::VectorXd heap = Eigen::VectorXd::Zero(kSteps);
     seen = const_cast<double*>(heap.data());
@@ -314,7 +314,7 @@ TEST(AllocationWatch, sees_what_eigen_allocates) {
   EXPECT_EQ(count.by_eigen, kSteps + 1);
 }
 
-TEST(AllocationWatch, sees_nothing_before_and_after_its_life) {
+TEST(AllocationWatch, counts_nothing_outside_its_lifetime) {
   seen = ::operator new(8), ::operator delete(seen);
   const AllocationWatch watch;
   EXPECT_EQ(watch.count().total(), 0);

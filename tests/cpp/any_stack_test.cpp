@@ -162,7 +162,7 @@ TEST(AnyStack, has_poses_of_fewer_rows) {
   EXPECT_GT((reached.R.col(0) - tip.R.col(0)).norm(), 0.2);
 }
 
-TEST(AnyStack, refuses_what_does_not_suit) {
+TEST(AnyStack, rejects_invalid_tasks) {
   EXPECT_THROW((void)frame_task(FrameCoordinates::kOrientation, kTip, kHeight), std::invalid_argument);
   EXPECT_THROW(AnyFrameTask(FrameCoordinates::kAxis, LinkFrame<>(0), kGains, kAll, false, Vector<3>::Zero()),
                std::invalid_argument);

@@ -87,7 +87,7 @@ TEST_P(CholeskyOf, reads_the_lower_triangle_only) {
   EXPECT_EQ(x, y);
 }
 
-TEST_P(CholeskyOf, refuses_what_is_not_positive_definite) {
+TEST_P(CholeskyOf, rejects_matrices_that_are_not_positive_definite) {
   const int rows = GetParam().rows;
   Random random(2);
   const Eigen::MatrixXd A = random.positive_definite(rows);
@@ -104,7 +104,7 @@ TEST_P(CholeskyOf, refuses_what_is_not_positive_definite) {
   EXPECT_FALSE(GetParam().factors(Eigen::MatrixXd::Ones(rows, rows))) << "of rank one";
 }
 
-TEST_P(CholeskyOf, refuses_what_is_not_finite) {
+TEST_P(CholeskyOf, rejects_matrices_that_are_not_finite) {
   Random random(3);
   const Eigen::MatrixXd A = random.positive_definite(GetParam().rows);
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
@@ -119,7 +119,7 @@ TEST_P(CholeskyOf, refuses_what_is_not_finite) {
 }
 
 /// No scale is too small or too large, because pivots are compared with the diagonal.
-TEST_P(CholeskyOf, is_indifferent_to_scale) {
+TEST_P(CholeskyOf, does_not_depend_on_scale) {
   Random random(4);
   const Eigen::MatrixXd A = random.positive_definite(GetParam().rows);
   for (const double scale : {1e-30, 1e-6, 1e6, 1e30}) EXPECT_TRUE(GetParam().factors(scale * A)) << scale;

@@ -259,7 +259,7 @@ TYPED_TEST(Distances, of_capsules_are_the_least_over_both_cores) {
   }
 }
 
-TYPED_TEST(Distances, change_as_the_normal_says) {
+TYPED_TEST(Distances, have_the_normal_as_their_gradient) {
   const int all = trials(kTrials);
   for (int i = 0; i < all; ++i) {
     const auto [first, second] = this->capsules();

@@ -228,7 +228,7 @@ TEST(KeepsMargins, is_never_unsafe_and_rarely_conservative) {
 }
 
 /// If a number is NaN or infinite, keeps_margins() returns false.
-TEST(KeepsMargins, is_unsure_of_what_is_not_finite) {
+TEST(KeepsMargins, returns_false_for_numbers_that_are_not_finite) {
   Random random(5);
   auto clearance = surrounded(tree_of(presets::panda()), random);
   const Joints q = (Joints(7) << 0.0, -0.8, 0.0, -2.4, 0.0, 1.6, 0.8).finished();

@@ -94,7 +94,7 @@ void expect_followers_within_bounds(const Chain<>& chain, const Scheme& scheme, 
     worst = std::max(worst, broken);
   }
 }
-TEST(CoupledArm, keeps_the_bounds_of_those_that_follow) {
+TEST(CoupledArm, keeps_the_bounds_of_mimic_joints) {
   double worst = -kNone;
   const int chains = trials(300);
   for (int seed = 0; seed < chains; ++seed) {

@@ -155,7 +155,7 @@ TEST_P(DampedLevel, is_off_with_radius_0) {
 
 /// For any smallest singular value, the motion is at most 1.17 |r|/ε, the higher level does not change, and the
 /// directions that are not lost are executed completely.
-TEST_P(DampedLevel, bounds_the_motion_and_does_what_is_not_lost) {
+TEST_P(DampedLevel, bounds_the_motion_and_executes_the_remaining_task) {
   double largest = 0.0;
   double disturbed = 0.0;
   double undone = 0.0;

@@ -235,7 +235,7 @@ TEST_P(Damping, bounds_the_joint_velocities) {
 }
 
 /// The result is always finite, down to the smallest radius that the Scalar resolves.
-TEST_P(Damping, always_has_an_answer) {
+TEST_P(Damping, has_a_finite_result) {
   around_singular_states([](const Scene& scene, const Law& law) {
     const double smallest = 32.0 * std::sqrt(subject().epsilon);
     for (const double radius : {smallest, 1e-2, 1.0}) {
@@ -248,7 +248,7 @@ TEST_P(Damping, always_has_an_answer) {
 }
 
 /// A state or reference that is not finite is rejected, with and without damping.
-TEST_P(Damping, does_not_hide_what_is_not_finite) {
+TEST_P(Damping, does_not_hide_numbers_that_are_not_finite) {
   Random random(1);
   const Law law = with_radius(random_law(random, subject(), true), 0.1);
   const Scene good = singular_scene(random);
@@ -315,7 +315,7 @@ class SmoothDamping : public Damping {
 };
 
 /// No jump: difference quotients stay bounded if the steps decrease.
-TEST_P(SmoothDamping, answers_without_a_jump) {
+TEST_P(SmoothDamping, is_continuous) {
   ASSERT_EQ(at(0.0).status, Status::kDamped);
   ASSERT_EQ(at(1.01 * kEdge).status, Status::kOk) << "the line leaves the radius";
   EXPECT_LE(steepest(5e-4), 1.25 * steepest(2e-3));
@@ -323,7 +323,7 @@ TEST_P(SmoothDamping, answers_without_a_jump) {
 
 /// Two continuous derivatives in the singular posture, at the damping radius, and in between: the second difference
 /// quotients of both sides converge if the step decreases.
-TEST_P(SmoothDamping, answers_with_two_continuous_derivatives) {
+TEST_P(SmoothDamping, has_two_continuous_derivatives) {
   for (const double s : {0.0, kEdge, -kEdge, 0.37 * kEdge}) {
     const double coarse = std::max({kink(s, 4e-3), kink(s, 3e-3), kink(s, 2e-3)});
     const double h = 2.5e-4;

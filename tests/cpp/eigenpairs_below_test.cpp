@@ -115,7 +115,7 @@ TEST_P(EigenpairsBelowOf, matrices_with_eigenvalues_that_repeat) {
   expect_eigenpairs(Eigen::MatrixXd::Ones(rows, rows));
 }
 
-TEST_P(EigenpairsBelowOf, what_is_not_finite_ends_and_is_not_finite) {
+TEST_P(EigenpairsBelowOf, matrices_that_are_not_finite_give_values_that_are_not_finite) {
   const int rows = GetParam().rows;
   for (const double nonsense : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     Eigen::MatrixXd A = Eigen::MatrixXd::Ones(rows, rows);

@@ -44,7 +44,7 @@ NullSpace<4> damped() {
 }
 
 /// From a wrong start velocity, in a rollout: e(0) = 0, ė(0) = xd(0) − J qd(0).
-TEST(ErrorDynamics, of_a_wrong_start_velocity_are_those_of_the_gains) {
+TEST(ErrorDynamics, of_a_start_velocity_error_are_those_of_the_gains) {
   const State<4> start{paper_start().q, Vector<4>(0.01, -0.04, 0.02, 0.03)};
   for (const auto& [k1, k2] : {kUndamped, kUnderdamped, kCritical, kOverdamped, kVelocityOnly, kNone}) {
     for (const double alpha : {0.0, 0.3, 0.6, 1.0}) {
@@ -65,7 +65,7 @@ TEST(ErrorDynamics, of_a_wrong_start_velocity_are_those_of_the_gains) {
 }
 
 /// From a wrong start position too: RK4 with an offset reference and random dense weights.
-TEST(ErrorDynamics, of_a_wrong_start_position_are_those_of_the_gains) {
+TEST(ErrorDynamics, of_a_start_position_error_are_those_of_the_gains) {
   using Scheme = AccelerationScheme<4, double, DenseWeights<4>>;
   const PlanarArm<4> arm = paper_arm();
   const auto path = paper_circle();

@@ -120,7 +120,7 @@ TEST_P(Failure, ends_a_line_that_leaves_the_workspace) {
 }
 
 /// From a singular start, no sample is recorded.
-TEST_P(Failure, refuses_a_singular_start) {
+TEST_P(Failure, rejects_a_singular_start) {
   const int n = GetParam().dof;
   for (const double direction : {0.0, 0.3}) {
     for (const double fold : {0.0, kPi}) {
@@ -209,7 +209,7 @@ void expect_the_truth(const AnyArmFor<Space>& arm, const AnyPath<Space>& path, d
     ++(run.error <= 1e-4 ? tally.fine : tally.coarse);
   }
 }
-TEST(StepLength, is_said_to_be_too_long_where_the_tip_error_is_its_fault) {
+TEST(StepLength, is_reported_if_it_causes_the_tip_error) {
   AccuracyTally tally;
   for (int seed = 0; seed < trials(400); ++seed) {
     Random random(static_cast<std::uint32_t>(seed));
@@ -244,7 +244,7 @@ TEST(StepLength, is_said_to_be_too_long_where_the_tip_error_is_its_fault) {
 
 /// If the start velocity differs from the velocity of the path, the status does not attribute the error to the step
 /// length.
-TEST(StepLength, is_not_reported_for_a_wrong_start) {
+TEST(StepLength, is_not_reported_for_a_start_error) {
   int wrong = 0;
   for (int seed = 0; seed < 200; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));

@@ -132,7 +132,7 @@ void expect_to_rest_at_the_end() {
   }
 }
 
-TEST(Jerk, a_joint_pushed_against_its_end_does_not_tremble) {
+TEST(Jerk, a_joint_pushed_against_its_end_does_not_chatter) {
   expect_to_rest_at_the_end<Level::kAcceleration, double>();
   expect_to_rest_at_the_end<Level::kVelocity, double>();
 }
@@ -345,7 +345,7 @@ TEST(Jerk, a_step_is_followed_along_its_line) {
 }
 
 /// A jerk bound that admits the full range of acceleration in one tick changes no bit.
-TEST(Jerk, without_a_bound_every_bit_stays) {
+TEST(Jerk, a_bound_without_effect_changes_no_bit) {
   const auto move = [](double jerk) {
     Chain<> chain = presets::panda();
     for (Joint<>& joint : chain.joints) joint.bounds.jerk = jerk;
@@ -363,7 +363,7 @@ TEST(Jerk, without_a_bound_every_bit_stays) {
 }
 
 /// A velocity envelope of a manufacturer near the ends of the range holds too.
-TEST(Jerk, a_maker_s_envelope_holds_too) {
+TEST(Jerk, a_velocity_envelope_is_kept) {
   auto bounds = JointLimits<1>::none(1);
   bounds.set(0, {-2.75010, 2.75010, 2.62, 10.0, 5000.0, 0.30, 6.0});
   const Limits<Level::kAcceleration, 1> limits(bounds, kTick);
@@ -386,7 +386,7 @@ TEST(Jerk, a_maker_s_envelope_holds_too) {
 }
 
 /// resolve_measured() bounds the jerk with respect to its previous result, for any measured state.
-TEST(Jerk, answers_for_measured_states_do_not_jump) {
+TEST(Jerk, resolve_measured_bounds_its_jerk) {
   const SerialArm<7> arm(presets::panda());
   JointLimits<7> bounds = arm.limits();
   bounds.jerk = 100.0 * bounds.acceleration;
@@ -429,7 +429,7 @@ TEST(Jerk, joints_measured_beyond_a_bound_return) {
   }
 }
 
-TEST(Jerk, nonsense_is_refused) {
+TEST(Jerk, invalid_bounds_are_rejected) {
   auto bounds = JointLimits<2>::none(2);
   bounds.set(0, {-1.0, 1.0, 2.0, 10.0, 100.0});
   bounds.set(1, {-1.0, 1.0, 2.0, 10.0, -1.0});

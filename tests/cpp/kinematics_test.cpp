@@ -103,7 +103,7 @@ TEST_P(PlanarKinematics, equals_the_plain_formula) {
 }
 
 /// J is the derivative of f, and Jd the derivative of J along qd, by central differences.
-TEST_P(PlanarKinematics, differentiates_as_J_and_Jd_say) {
+TEST_P(PlanarKinematics, has_J_and_Jd_as_derivatives) {
   everywhere([](const Eigen::VectorXd& lengths, const Eigen::VectorXd& q, const Eigen::VectorXd& qd) {
     constexpr double kStep = 1e-5;
     const Situation out = GetParam().evaluate(lengths, q, qd);

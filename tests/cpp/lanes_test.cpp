@@ -169,12 +169,12 @@ void expect_each_to_be_resolved(const Arm& arm, double radius) {
   EXPECT_EQ(left > 0, radius > 0.0);
 }
 
-TEST(Lanes, resolve_as_each_arm_does_by_itself) {
+TEST(Lanes, resolve_like_single_arms) {
   expect_each_to_be_resolved<Position<2>>(PlanarArm<4>(Vector<4>(1.0, 0.8, 0.6, 0.4)), 0.0);
   expect_each_to_be_resolved<Pose>(SerialArm<7>(presets::panda()), 0.0);
 }
 
-TEST(Lanes, leave_a_nearly_singular_posture_to_the_code_that_damps) {
+TEST(Lanes, resolve_nearly_singular_postures_like_single_arms) {
   expect_each_to_be_resolved<Position<2>>(PlanarArm<4>(Vector<4>(1.0, 0.8, 0.6, 0.4)), 0.2);
 }
 
@@ -194,7 +194,7 @@ Motions run(const std::array<Vector<4>, kLanes>& starts, double radius) {
   return {result.last.q, summary.result()};
 }
 
-TEST(Lanes, run_each_motion_as_by_itself) {
+TEST(Lanes, run_like_single_motions) {
   const Vector<4> bent(0.3, 0.8, 0.6, 0.5);
   const Vector<4> other(0.1, 1.2, -0.7, 0.9);
   const Vector<4> outstretched(0.4, 0.01, -0.01, 0.02);  // A point half a metre further is unreachable.

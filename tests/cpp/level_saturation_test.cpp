@@ -201,18 +201,18 @@ void expect_priorities(const char* name, Eigen::Index most, int problems, bool o
 TEST(LevelSaturation, every_scale_is_the_largest) {
   expect_priorities("levels", 9, trials(2000), false, false);
 }
-TEST(LevelSaturation, so_with_rows_that_depend_on_others) {
+TEST(LevelSaturation, every_scale_is_the_largest_with_dependent_rows) {
   expect_priorities("odd levels", 9, trials(2000), true, false);
 }
-TEST(LevelSaturation, so_within_further_bounds) {
+TEST(LevelSaturation, every_scale_is_the_largest_within_further_bounds) {
   expect_priorities("levels and rows", 9, trials(1000), false, true);
 }
-TEST(LevelSaturation, so_with_many_joints) {
+TEST(LevelSaturation, every_scale_is_the_largest_with_many_joints) {
   expect_priorities("many joints", 32, trials(200), true, false);
 }
 
 /// For one level, the result is the saturation of a single task.
-TEST(LevelSaturation, of_one_level_is_the_saturation_of_a_task) {
+TEST(LevelSaturation, of_one_level_equals_that_of_a_task) {
   for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(trials(200)); ++seed) {
     Random random(seed);
     const Problem problem = random_problem(random, 7, 1, false);

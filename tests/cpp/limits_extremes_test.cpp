@@ -133,7 +133,7 @@ void expect_more_to_allow_more() {
     }
   }
 }
-TEST(LimitsOfAnySize, allow_more_where_joints_accelerate_harder) {
+TEST(LimitsOfAnySize, allow_more_with_a_higher_acceleration_bound) {
   expect_more_to_allow_more<Level::kAcceleration, double>();
   expect_more_to_allow_more<Level::kVelocity, double>();
   expect_more_to_allow_more<Level::kAcceleration, float>();

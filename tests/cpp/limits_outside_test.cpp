@@ -45,7 +45,7 @@ void advance(State<7>& state, const Vector<7>& qdd) {
   state.qd += kTick * qdd;
 }
 
-TEST(Outside, joints_return_as_fast_as_they_may) {
+TEST(Outside, joints_return_as_fast_as_bounds_allow) {
   const SerialArm<7> panda(panda_without_jerk());
   const JointLimits<7>& bounds = panda.limits();
   const auto scheme = holding_scheme(kReady);
@@ -145,7 +145,7 @@ void expect_no_kick() {
     ASSERT_LE(std::abs(most(end + hair, qd) - most(end - hair, qd)), Scalar(4) * hair / per_tick) << "seed " << seed;
   }
 }
-TEST(Outside, nothing_kicks_at_a_bound) {
+TEST(Outside, no_acceleration_peak_occurs_at_a_bound) {
   expect_no_kick<Level::kAcceleration, double>();
   expect_no_kick<Level::kVelocity, double>();
   expect_no_kick<Level::kAcceleration, float>();
@@ -154,7 +154,7 @@ TEST(Outside, nothing_kicks_at_a_bound) {
 
 /// A joint that is pushed against its bound and measured with noise keeps its acceleration bound. Its deviation is as
 /// large as the noise.
-TEST(Outside, noise_about_a_bound_does_no_harm) {
+TEST(Outside, noise_about_a_bound_keeps_the_acceleration_bound) {
   const SerialArm<7> panda(panda_without_jerk());
   const JointLimits<7>& bounds = panda.limits();
   for (Eigen::Index joint = 0; joint < 7; ++joint) {

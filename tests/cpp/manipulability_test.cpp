@@ -116,7 +116,7 @@ TEST(ManipulabilityAscent, equals_the_textbook) {
   }
 }
 
-TEST(ManipulabilityAscent, commutes_with_what_adds) {
+TEST(ManipulabilityAscent, commutes_with_further_objectives) {
   const PlanarArm<4> arm = paper_arm();
   const State<4> state{paper_start().q, Vector<4>(0.1, 0.2, -0.3, 0.1)};
   Kinematics<Position<2>, 4> kinematics;
@@ -138,7 +138,7 @@ TEST(ManipulabilityAscent, commutes_with_what_adds) {
   EXPECT_EQ(answer(ManipulabilityAscent(with({}), arm, 0.0)), bare);
 }
 
-TEST(ManipulabilityAscent, refuses_what_makes_no_sense) {
+TEST(ManipulabilityAscent, rejects_invalid_arguments) {
   const PlanarArm<Eigen::Dynamic> arm(Vector<4>::Ones());
   const auto scheme = MVN<Eigen::Dynamic>();
   for (const double gain : {-1.0, std::numeric_limits<double>::infinity()}) {
@@ -153,7 +153,7 @@ TEST(ManipulabilityAscent, refuses_what_makes_no_sense) {
 }
 
 /// If the scheme fails, the ascent returns the same status and does not change u.
-TEST(ManipulabilityAscent, hands_failures_on) {
+TEST(ManipulabilityAscent, returns_failures_of_the_scheme) {
   const PlanarArm<4> arm = paper_arm();
   const auto attempt = [&](const Vector<4>& q, const Vector<2>& x) {
     const State<4> state{q, Vector<4>::Zero()};
@@ -192,7 +192,7 @@ void expect_to_climb(const Scheme& scheme, double gain) {
   EXPECT_LE(with.result.last.qd.norm(), 1e-3);
 }
 
-TEST(ManipulabilityAscent, climbs_and_leaves_the_tip_alone) {
+TEST(ManipulabilityAscent, increases_manipulability_without_tip_motion) {
   expect_to_climb(MVN<4>(1.0), 0.2);
   expect_to_climb(paper_fpbm(NullSpace<4>{}.with_damping(3.0)), 0.5);
 }

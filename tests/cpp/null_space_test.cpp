@@ -50,7 +50,7 @@ TEST(NullSpace, centring_descends_the_gradient_of_its_cost) {
   }
 }
 
-TEST(NullSpace, centring_leaves_joints_without_bounds_alone) {
+TEST(NullSpace, centring_does_not_move_joints_without_bounds) {
   JointLimits<4> limits = some_limits();
   limits.lower(0) = -kNone;
   limits.upper(2) = kNone;
@@ -82,7 +82,7 @@ TEST(NullSpace, parts_add_up_in_any_order) {
   } while (std::next_permutation(order.begin(), order.end()));
 }
 
-TEST(NullSpace, refuses_what_makes_no_sense) {
+TEST(NullSpace, rejects_invalid_arguments) {
   const NullSpace<4> z;
   JointLimits<4> limits = some_limits();
   for (const double gain : {0.0, -1.0, kNone, std::numeric_limits<double>::quiet_NaN()}) {

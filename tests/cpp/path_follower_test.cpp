@@ -113,7 +113,7 @@ TYPED_TEST(PathFollowers, do_nothing_when_called_again) {
 }
 
 /// A transition takes one ramp from rest or full speed, and up to 1.25 ramps if it reverses another transition.
-TYPED_TEST(PathFollowers, are_there_within_a_ramp_and_a_quarter) {
+TYPED_TEST(PathFollowers, complete_transitions_within_1_25_ramps) {
   const auto arrives = [this](const auto& follower, double within, double rate) {
     const double grace = 1.0 + 64.0 * this->kEpsilon;
     EXPECT_EQ(clock_of(follower, within * grace).r, rate);

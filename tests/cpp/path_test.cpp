@@ -79,7 +79,7 @@ class Paths : public ::testing::TestWithParam<ErasedPath> {
   static constexpr double kSteep = 20.0;  ///< Upper bound on the slopes of the shapes above with respect to s [m].
 };
 
-TEST_P(Paths, differentiate_as_xd_and_xdd_say) {
+TEST_P(Paths, have_xd_and_xdd_as_derivatives) {
   const auto& sample = GetParam().sample_in_double;
   constexpr double kStep = 1e-5;
   for (double t = 0.01; t < kT; t += 0.0937) {
@@ -159,7 +159,7 @@ void expect_ends(double speed, double first_acceleration, double last_accelerati
   EXPECT_NEAR(last.sdd, last_acceleration, 1e-14);
 }
 
-TEST(TimeLaws, begin_and_end_as_they_say) {
+TEST(TimeLaws, have_their_documented_end_derivatives) {
   expect_ends<SinSquared>(0.0, kPi * kPi / 2.0, -kPi * kPi / 2.0);
   expect_ends<Quintic>(0.0, 0.0, 0.0);
   expect_ends<ConstantSpeed>(1.0, 0.0, 0.0);

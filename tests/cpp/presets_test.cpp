@@ -271,7 +271,7 @@ void expect_to_reach_a_near_target(const AnyArm<Position<3>>& arm, const Scheme&
 }
 
 /// With the bounds of the preset, at both levels.
-TEST(Presets, run_in_a_control_loop_as_they_come) {
+TEST(Presets, run_in_a_control_loop_with_default_limits) {
   for (const presets::Preset& known : presets::kAll) {
     SCOPED_TRACE(known.name);
     const AnyArm<Position<3>> arm = any_arm(known.chain());

@@ -83,7 +83,7 @@ TYPED_TEST(QuickestStops, are_motions_within_their_bounds_to_their_end_position)
 }
 
 /// From every later state of the stop, the remaining stop is the same.
-TYPED_TEST(QuickestStops, go_on_as_they_began) {
+TYPED_TEST(QuickestStops, continue_from_later_states) {
   using Scalar = TypeParam;
   for (int i = 0; i < trials(10000); ++i) {
     const auto [stop, start, duration, size] = this->next();

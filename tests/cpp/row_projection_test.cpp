@@ -77,7 +77,7 @@ TEST(RowProjection, is_optimal) {
 }
 
 /// Contradictory rows admit no motion: the projection reports it and returns finite numbers.
-TEST(RowProjection, says_where_rows_exclude_one_another) {
+TEST(RowProjection, reports_contradictory_rows) {
   Rows<7, 2> rows;
   rows.g.col(0) = Vector<7>::Ones();
   rows.g.col(1) = -Vector<7>::Ones();
@@ -90,7 +90,7 @@ TEST(RowProjection, says_where_rows_exclude_one_another) {
 }
 
 /// A surface ahead of the tip changes the task only along its normal, for all other rows of the same surface.
-TEST(TaskGivenUp, is_along_a_surface_s_normal) {
+TEST(SmallestTaskChange, is_along_a_surface_s_normal) {
   for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(trials(2000)); ++seed) {
     Random random(seed);
     const Matrix<3, 7> J = random.uniform(3, 7, -1.0, 1.0);
@@ -117,7 +117,7 @@ TEST(TaskGivenUp, is_along_a_surface_s_normal) {
 
 /// Share of the correction that is null-space motion: 1 if the row does not move the task, 0 if the row only moves the
 /// task.
-TEST(TaskGivenUp, knows_what_self_motion_could_do) {
+TEST(SmallestTaskChange, has_the_share_of_null_space_motion) {
   for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(trials(200)); ++seed) {
     Random random(seed);
     const Matrix<3, 7> J = random.uniform(3, 7, -1.0, 1.0);
@@ -138,7 +138,7 @@ TEST(TaskGivenUp, knows_what_self_motion_could_do) {
 }
 
 /// If the rows admit the motion, or no change of the task helps, the change of the task is zero.
-TEST(TaskGivenUp, is_nothing_where_rows_admit_the_motion) {
+TEST(SmallestTaskChange, is_zero_if_rows_admit_the_motion) {
   const Matrix<3, 7> J = Random(1).uniform(3, 7, -1.0, 1.0);
   Rows<7, 2> rows;
   rows.g = Random(2).uniform(7, 2, -1.0, 1.0);

@@ -56,7 +56,7 @@ void expect_ok_to_be_ok(const std::string& name, const Arm& arm, const Vector<N>
   EXPECT_GT(slowed, 0);
 }
 
-TEST(Scale, is_less_than_one_where_less_is_done) {
+TEST(Scale, is_less_than_one_if_the_task_is_scaled) {
   Vector<N> bent(7);
   bent << 0.1, -0.3, 0.2, -2.2, 0.1, 2.0, 0.785;
   expect_ok_to_be_ok<Pose>("Panda, pose", any_arm(presets::panda()), bent);

@@ -69,7 +69,7 @@ void expect_the_same_at_every_size(MakeArm&& make_arm, const Vector<Eigen::Dynam
   return any_arm(chain);
 }
 
-TEST(ScaledArm, does_the_same_in_space) {
+TEST(ScaledArm, moves_equally_at_every_size_in_space) {
   Vector<Eigen::Dynamic> q0(7);
   q0 << 0.1, -0.3, 0.2, -2.2, 0.1, 2.0, 0.785;
   const auto panda = [](double factor) { return scaled(presets::panda(), factor); };
@@ -80,7 +80,7 @@ TEST(ScaledArm, does_the_same_in_space) {
   expect_the_same_at_every_size<Pose>([](double factor) { return scaled(presets::ur5e(), factor); }, bent);
 }
 
-TEST(ScaledArm, does_the_same_in_the_plane) {
+TEST(ScaledArm, moves_equally_at_every_size_in_the_plane) {
   Vector<Eigen::Dynamic> q0(3);
   q0 << 0.3, 0.8, 0.5;
   const auto planar = [](double factor) { return any_planar_arm(factor * Vector<Eigen::Dynamic>::Ones(3)); };

@@ -72,7 +72,7 @@ TEST_P(SchemeLaws, moves_the_tip_as_commanded) {
 }
 
 /// J N_W = 0 (Lemma 2): z does not change the task. If a null space exists, z changes u.
-TEST_P(SchemeLaws, a_secondary_motion_leaves_the_task_alone) {
+TEST_P(SchemeLaws, a_secondary_motion_does_not_change_the_task) {
   everywhere([](const Scene& scene, const Law& law) {
     if (!law.has_null_space) return;
     Law bare = law;
@@ -99,7 +99,7 @@ TEST_P(SchemeLaws, only_the_ratios_of_the_weights_matter) {
 }
 
 /// A straight arm cannot move its tip along its links: the scheme rejects the state and does not change u.
-TEST_P(SchemeLaws, a_singular_posture_is_refused) {
+TEST_P(SchemeLaws, a_singular_posture_is_rejected) {
   everywhere([](Scene scene, const Law& law) {
     for (const double direction : {0.0, 0.3, 2.0}) {
       scene.q.setZero();
@@ -112,7 +112,7 @@ TEST_P(SchemeLaws, a_singular_posture_is_refused) {
 }
 
 /// For a state or reference that is not finite, the scheme returns a status and does not change u.
-TEST_P(SchemeLaws, what_is_not_finite_is_refused) {
+TEST_P(SchemeLaws, numbers_that_are_not_finite_are_rejected) {
   const Subject& subject = GetParam();
   const bool acceleration = subject.takes.acceleration;
   everywhere([&](const Scene& good, const Law& law) {

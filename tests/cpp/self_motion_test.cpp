@@ -153,7 +153,7 @@ TYPED_TEST(RowFactors, solve_without_the_square_of_the_condition) {
 }
 
 /// A row that equals another row is lost, for every size. Entries that are not finite are not reported as singular.
-TYPED_TEST(RowFactors, refuse_what_has_no_factor) {
+TYPED_TEST(RowFactors, report_singular_matrices) {
   using S = typename TypeParam::Scalar;
   constexpr int M = TypeParam::M;
   constexpr int N = TypeParam::N;

@@ -135,7 +135,7 @@ void expect_same_arm(const Chain<>& chain, Random& random) {
   EXPECT_LE((out.Jd.template cast<double>() - expected.Jd).norm(), round_off * expected.J.norm() * (1.0 + qd.norm()));
 }
 
-TEST(SerialArm, is_the_same_in_other_numbers) {
+TEST(SerialArm, agrees_in_other_scalar_types) {
   Random random(9);
   for (int trial = 0; trial < 50; ++trial) {
     SCOPED_TRACE("trial " + std::to_string(trial));
@@ -289,7 +289,7 @@ TEST(SerialArm, of_a_chain_of_known_length_is_the_same) {
   }
 }
 
-TEST(SerialArm, what_is_refused_has_a_name_an_index_and_a_value) {
+TEST(SerialArm, rejected_bounds_have_a_name_an_index_and_a_value) {
   const auto refused = [](auto change) {
     Chain<double, 2> chain;
     chain.joints[0].name = "elbow";
@@ -311,7 +311,7 @@ TEST(SerialArm, what_is_refused_has_a_name_an_index_and_a_value) {
       std::tuple("joint 'elbow'.placement.p[1] = inf: must be finite", "joint 'elbow'.placement.p", 1, kInfinite));
 }
 
-TEST(SerialArm, bad_chains_are_refused) {
+TEST(SerialArm, invalid_chains_are_rejected) {
   const auto refusal = [](const std::vector<Joint<>>& joints, const Transform<>& tip) -> std::string {
     try {
       SerialArm<2>({joints, tip});

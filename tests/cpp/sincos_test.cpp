@@ -79,7 +79,7 @@ TEST(SinCos, is_exact_at_multiples_of_a_quarter_turn) {
   EXPECT_LE(worst, 2e-16);
 }
 
-TEST(SinCos, falls_back_beyond_its_range) {
+TEST(SinCos, uses_the_standard_functions_beyond_its_range) {
   for (const double angle : {std::nextafter(ReducedSinCos::kReach, 1e9), 1e6, -1e9, 1e15, 1e300}) {
     EXPECT_LE(error_at(angle), 2e-16) << angle;
   }
@@ -111,7 +111,7 @@ void expect_nan_of(Scalar bad) {
   }
 }
 
-TEST(SinCos, of_what_is_not_finite_is_nan_there_and_nowhere_else) {
+TEST(SinCos, of_entries_that_are_not_finite_are_nan_in_those_entries_only) {
   expect_nan_of(std::numeric_limits<double>::quiet_NaN());
   expect_nan_of(std::numeric_limits<double>::infinity());
   expect_nan_of(-std::numeric_limits<double>::infinity());
@@ -145,7 +145,7 @@ TEST(SinCos, of_float_is_exact_to_round_off) {
   EXPECT_EQ(sincos(1e-30F).sin, 1e-30F);
 }
 
-TEST(SinCos, takes_as_many_angles_as_there_are) {
+TEST(SinCos, accepts_any_number_of_angles) {
   for (const Eigen::Index n : {1, 2, 5, 17, 32}) {
     const Vector<Eigen::Dynamic> angles = Vector<Eigen::Dynamic>::LinSpaced(n, -3.0, 40.0);
     Vector<Eigen::Dynamic> sines;

@@ -251,7 +251,7 @@ void expect_time_to_leave_the_end() {
   }
 }
 
-TEST(SlowJoints, may_leave_an_end_that_they_rest_on) {
+TEST(SlowJoints, leave_an_end_of_their_range_in_time) {
   expect_time_to_leave_the_end<Level::kAcceleration>();
   expect_time_to_leave_the_end<Level::kVelocity>();
 }

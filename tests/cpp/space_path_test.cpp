@@ -251,7 +251,7 @@ std::string refusal(Make&& make) {
   return "accepted";
 }
 
-TEST(SpacePaths, bad_ones_are_refused) {
+TEST(SpacePaths, invalid_paths_are_rejected) {
   constexpr double kInf = std::numeric_limits<double>::infinity();
   const Path circle(Circle(0.3), 5.0);
   EXPECT_EQ(refusal([&] { return InPlane(circle, Vector<3>(1, 0, 0), Vector<3>(0, 0, 0)); }),

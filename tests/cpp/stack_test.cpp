@@ -218,7 +218,7 @@ TEST(Task, of_a_tree_has_the_rows_of_its_point_s_derivative) {
   expect_derivatives_of_relative_tasks<Eigen::Dynamic, Eigen::Dynamic>(tree);
 }
 
-TEST(Task, names_what_does_not_suit_a_tree) {
+TEST(Task, names_the_invalid_argument_for_a_tree) {
   const Robot<16> robot(two_pandas(true));
   const TaskGains<> gains(1.0, 1.0);
   const auto bound = [&](auto task) { return complaint([&] { task.bind(robot); }); };
@@ -618,7 +618,7 @@ TEST(Stack, has_a_source_of_references_for_each_task) {
 }
 
 /// An infeasible task stops with scale 0, and follows its target again when the target returns.
-TEST(Stack, says_which_level_has_stopped) {
+TEST(Stack, reports_the_stopped_level) {
   Cup cup(Vector<3>(0.6, 0.8, 0.2));
   cup.run(20000);
   auto tick = cup.tick();
@@ -834,7 +834,7 @@ TEST(Stack, levels_are_enabled_and_disabled_at_run_time) {
   EXPECT_LT(excess.worst, 1e-9);
 }
 
-TEST(Stack, refuses_what_does_not_suit) {
+TEST(Stack, rejects_invalid_arguments) {
   const Vector<7> q0 = 0.5 * (panda().limits().lower + panda().limits().upper);
   const TaskGains<> gains(10.0, 25.0);
   EXPECT_THROW(RobotTasks(panda(), Stack(PoseTask<>{{8}, gains})), std::invalid_argument);

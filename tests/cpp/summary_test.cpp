@@ -104,14 +104,14 @@ void expect_summaries(Eigen::Index dof) {
   }
 }
 
-TEST(Summary, equals_what_the_samples_give) {
+TEST(Summary, equals_that_of_the_samples) {
   for (const Eigen::Index dof : {6, 7, 9}) expect_summaries<Pose, Eigen::Dynamic>(dof);
   for (const Eigen::Index dof : {3, 6}) expect_summaries<PlanarPose, Eigen::Dynamic>(dof);
   expect_summaries<Position<3>, 7>(7);
 }
 
 /// With gains that the step does not resolve well, so that an error occurs.
-TEST(Summary, equals_what_a_motion_gives) {
+TEST(Summary, equals_that_of_the_samples_of_a_motion) {
   const AnyPath<Position<2>> path(Path(Line<2>(Vector<2>(0.002, 0.002)), 0.2));
   const TimeGrid<> grid(path.duration(), 0.01, 0.1);
   const auto [samples, summary] = both(path, FPBM<4>(0.6, Vector<4>(Vector<4>::Ones()), 30.0, 80.0), grid);
@@ -133,7 +133,7 @@ TEST(Summary, counts_the_slopes_at_the_ends) {
   }
 }
 
-TEST(Summary, finds_what_is_in_between) {
+TEST(Summary, includes_samples_between_the_ends) {
   const AnyPath<Position<2>> path = paper_circle();
   const auto [samples, summary] = both(path, paper_fpbm(), TimeGrid<>(kDuration, 1e-2));
   EXPECT_LT(summary.manipulability, manipulability(samples.front().J));
@@ -141,7 +141,7 @@ TEST(Summary, finds_what_is_in_between) {
   EXPECT_GT(summary.peak_velocity, 2.0 * summary.final_velocity);
 }
 
-TEST(Summary, of_nothing_is_empty) {
+TEST(Summary, without_samples_is_empty) {
   const MotionSummary<> summary = Summary<Position<2>, 4>(Level::kVelocity).result();
   EXPECT_EQ(summary.max_error, 0.0);
   EXPECT_EQ(summary.peak_velocity, 0.0);
@@ -150,7 +150,7 @@ TEST(Summary, of_nothing_is_empty) {
 }
 
 /// A recorder can end the motion. The samples before the end are valid.
-TEST(Rollout, ends_where_the_recorder_says_so) {
+TEST(Rollout, ends_if_the_recorder_returns_false) {
   int seen = 0;
   const auto result = rollout(paper_arm(), paper_circle(), paper_fpbm(), paper_start(), TimeGrid<>(kDuration, 1e-2),
                               [&](const auto&) noexcept { return ++seen < 7; });

@@ -244,7 +244,7 @@ TYPED_TEST(TargetFilters, do_not_lag_behind_a_stream) {
 }
 
 /// A joystick: the velocity is reached as fast as the bounds admit, and reduced to zero after the timeout.
-TYPED_TEST(TargetFilters, go_at_a_velocity_until_the_timeout) {
+TYPED_TEST(TargetFilters, move_at_a_velocity_until_the_timeout) {
   using Space = typename TypeParam::S;
   using Scalar = typename TypeParam::T;
   using Twist = Vector<Space::kRows, Scalar>;
@@ -274,7 +274,7 @@ TYPED_TEST(TargetFilters, go_at_a_velocity_until_the_timeout) {
 
 /// Displacements per tick below the last bit of the point accumulate, up to errors of one last bit in each tick of
 /// either sign: √ticks last bits.
-TYPED_TEST(TargetFilters, go_slower_than_a_bit_a_tick) {
+TYPED_TEST(TargetFilters, move_slower_than_a_bit_per_tick) {
   using Space = typename TypeParam::S;
   using Scalar = typename TypeParam::T;
   Random random(47);
@@ -304,7 +304,7 @@ TEST(TargetFilter, turns_for_minutes) {
 }
 
 /// Within a tick, the reference is the motion from which the next tick continues.
-TYPED_TEST(TargetFilters, tell_what_is_ahead_within_the_tick) {
+TYPED_TEST(TargetFilters, have_references_within_the_tick) {
   using Space = typename TypeParam::S;
   using Scalar = typename TypeParam::T;
   Random random(45);
@@ -353,7 +353,7 @@ TYPED_TEST(TargetFilters, give_the_same_bits_for_the_same_targets) {
   EXPECT_TRUE(std::equal(bits[0], bits[0] + Space::kSize, bits[1]));
 }
 
-TYPED_TEST(TargetFilters, promise_not_to_throw) {
+TYPED_TEST(TargetFilters, are_noexcept) {
   using Filter = TargetFilter<typename TypeParam::S, typename TypeParam::T>;
   using Point = typename Filter::Point;
   using Twist = typename Filter::Twist;
@@ -404,7 +404,7 @@ TEST(TargetFilter, turns_in_the_shorter_direction) {
 }
 
 /// A jump of the target does not count as a velocity. Three points of a motion with constant velocity are sufficient.
-TEST(TargetFilter, takes_no_jump_for_a_velocity) {
+TEST(TargetFilter, does_not_treat_a_jump_as_a_velocity) {
   StreamedTarget<Position<2>, double> target({0.0, 0.0}, 5e-4, 0.2, {1.0, 1.0});
   const auto push = [&](double x, double elapsed) {
     target.push({x, 0.0}, elapsed);
@@ -426,7 +426,7 @@ TEST(TargetFilter, takes_no_jump_for_a_velocity) {
 
 /// A learnt clock treats the least delayed stamp as not delayed, and follows a clock that drifts. Its error is at most
 /// 0.2 ms.
-TEST(StampClock, learns_from_the_least_delayed) {
+TEST(StampClock, estimates_the_offset_from_the_least_delayed_stamp) {
   Random random(48);
   for (const double drift : {-5e-5, 0.0, 5e-5}) {
     StampClock<double> clock(1e-3, 0.2, {});
@@ -445,7 +445,7 @@ TEST(StampClock, learns_from_the_least_delayed) {
   }
 }
 
-TEST(StampClock, takes_only_news) {
+TEST(StampClock, accepts_only_newer_stamps) {
   StampClock<double> clock(1e-3, 0.2, {});
   EXPECT_TRUE(clock.accept(50.0));
   EXPECT_FALSE(clock.accept(50.0));
@@ -467,7 +467,7 @@ TEST(StampClock, takes_only_news) {
   EXPECT_NEAR(known.age(), -0.1, 1e-12);
 }
 
-TEST(TargetFilter, refuses_bad_numbers_by_name) {
+TEST(TargetFilter, rejects_invalid_numbers_by_name) {
   const auto refusal = [](const TargetBounds<>& bounds, const TargetFilterOptions<>& options,
                           double x0) -> std::string {
     try {
@@ -489,7 +489,7 @@ TEST(TargetFilter, refuses_bad_numbers_by_name) {
 }
 
 /// An arm follows the reference of the filter after a jump of the target.
-TEST(TargetFilter, leads_a_tracker) {
+TEST(TargetFilter, is_followed_by_a_tracker) {
   const PlanarArm<4> arm({1, 1, 1, 1});
   const auto scheme = FPBM<4>(0.6, Vector<4>(Vector<4>::Ones()), 10.0, 25.0, NullSpace<4>{}.with_damping(2.0));
   CompiledTracker tracker(arm, Position<2>{}, scheme, Vector<4>(0.26, 0.26, 0.21, 0.21));

@@ -228,7 +228,7 @@ TYPED_TEST(TargetStreams, a_first_stamp_from_the_future_does_not_block) {
 }
 
 /// A clock that restarts at 0, or is set forward or back: the stream is followed within the timeout and three messages.
-TYPED_TEST(TargetStreams, a_clock_that_is_set_anew_is_learnt_anew) {
+TYPED_TEST(TargetStreams, a_clock_that_is_set_is_estimated_again) {
   for (const double step : {-1e5, -3600.0, -1.0, -0.3, 0.3, 1.0, 3600.0, 1e7}) {
     Stream<typename TypeParam::Space, typename TypeParam::Scalar> stream;
     ASSERT_EQ(stream.run(3.0, 1e5), 0);
@@ -239,7 +239,7 @@ TYPED_TEST(TargetStreams, a_clock_that_is_set_anew_is_learnt_anew) {
 }
 
 /// After a silence, the clock of the sender continues or restarts. The stream is followed in both cases.
-TYPED_TEST(TargetStreams, a_silence_does_not_block) {
+TYPED_TEST(TargetStreams, a_pause_does_not_block) {
   for (const double step : {-1e5, -20.0, 0.0, 0.01, 5.0, 100.0}) {
     Stream<typename TypeParam::Space, typename TypeParam::Scalar> stream;
     ASSERT_EQ(stream.run(3.0, 1e5), 0);

@@ -85,7 +85,7 @@ TEST(Track, keeps_the_limits_and_is_a_rollout_far_from_them) {
   EXPECT_GT(fastest, 0.299);
 }
 
-TEST(Track, ends_where_the_recorder_says_so) {
+TEST(Track, ends_if_the_recorder_returns_false) {
   auto tracker = make_tracker(3.0);
   PathFollower follower(circle(), tracker.tip());
   int seen = 0;

@@ -178,7 +178,7 @@ using Subjects = testing::Types<Subject<Planar, Level::kVelocity>, Subject<Panda
 #endif
 TYPED_TEST_SUITE(TrackerBatchLaws, Subjects, );
 
-TYPED_TEST(TrackerBatchLaws, move_freely_as_each_by_itself) {
+TYPED_TEST(TrackerBatchLaws, move_without_limits_like_single_trackers) {
   using All = Motions<TypeParam>;
   using Case = typename TypeParam::Case;
   auto options = All::options();
@@ -188,7 +188,7 @@ TYPED_TEST(TrackerBatchLaws, move_freely_as_each_by_itself) {
   EXPECT_EQ(All::expect_agreement({Case::start(0.0), Case::start(0.1)}, 0.03, 50.0, 1e-12, options), Status::kOk);
 }
 
-TYPED_TEST(TrackerBatchLaws, keep_their_limits_as_each_by_itself) {
+TYPED_TEST(TrackerBatchLaws, keep_their_limits_like_single_trackers) {
   using All = Motions<TypeParam>;
   using Case = typename TypeParam::Case;
   constexpr int N = Case::N;
@@ -215,7 +215,7 @@ TYPED_TEST(TrackerBatchLaws, keep_their_limits_as_each_by_itself) {
 }
 
 /// Each tick starts from equal states, because a long motion on limits with bounds on jerk amplifies round-off errors.
-TYPED_TEST(TrackerBatchLaws, tick_from_equal_states_as_each_by_itself) {
+TYPED_TEST(TrackerBatchLaws, tick_from_equal_states_like_single_trackers) {
   using All = Motions<TypeParam>;
   using Case = typename TypeParam::Case;
   using Space = typename Case::Space;
@@ -256,7 +256,7 @@ TYPED_TEST(TrackerBatchLaws, tick_from_equal_states_as_each_by_itself) {
 }
 
 /// Bitwise, in any lane, for all contents of the other lanes.
-TYPED_TEST(TrackerBatchLaws, do_not_feel_one_another) {
+TYPED_TEST(TrackerBatchLaws, do_not_influence_one_another) {
   using All = Motions<TypeParam>;
   using Case = typename TypeParam::Case;
   constexpr int N = Case::N;
@@ -281,7 +281,7 @@ TYPED_TEST(TrackerBatchLaws, do_not_feel_one_another) {
 }
 
 /// If damping acts in every tick, the trackers compute all ticks themselves: bitwise the same result.
-TYPED_TEST(TrackerBatchLaws, leave_nearly_singular_postures_to_each) {
+TYPED_TEST(TrackerBatchLaws, compute_nearly_singular_postures_like_single_trackers) {
   using All = Motions<TypeParam>;
   using Case = typename TypeParam::Case;
   const auto start = Case::singular();
@@ -300,7 +300,7 @@ TYPED_TEST(TrackerBatchLaws, leave_nearly_singular_postures_to_each) {
   EXPECT_EQ(all.trackers()[1].state().qd, alone[1].state().qd);
 }
 
-TYPED_TEST(TrackerBatchLaws, end_where_the_recorder_says_so) {
+TYPED_TEST(TrackerBatchLaws, end_if_the_recorder_returns_false) {
   using All = Motions<TypeParam>;
   using Case = typename TypeParam::Case;
   const auto options = All::options();

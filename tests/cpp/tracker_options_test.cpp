@@ -167,7 +167,7 @@ TEST(TrackerOptions, bring_the_self_motion_to_rest) {
   }
 }
 
-TEST(TrackerOptions, leave_a_scheme_its_own_damping) {
+TEST(TrackerOptions, keep_the_damping_of_a_scheme) {
   const Vector<3> near(-0.05, 0.15, 0.1);
   const Preset panda = redundant()[0];
   const auto same = [&](const Preset& preset, const auto& scheme, const char* what) {
@@ -179,7 +179,7 @@ TEST(TrackerOptions, leave_a_scheme_its_own_damping) {
   same(ur5e(), Accelerations(fpbm(6)), "no null space");
 }
 
-TEST(TrackerOptions, need_a_scheme_that_takes_damping) {
+TEST(TrackerOptions, require_a_scheme_that_accepts_damping) {
   static_assert(kTakesDamping<Accelerations, double>);
   static_assert(kTakesDamping<VelocityScheme<7>, double>);
   static_assert(kTakesDamping<ManipulabilityAscent<AccelerationScheme<7>, SerialArm<7>>, double>);
@@ -235,7 +235,7 @@ void expect_a_limit(const std::string& name, double limit, const Make& make) {
   EXPECT_NE(make(1.002 * most), "");
 }
 
-TEST(TickGains, beyond_what_a_tick_integrates_are_refused) {
+TEST(TickGains, beyond_the_stability_bound_of_a_tick_are_rejected) {
   const Joints ones = Joints::Ones(7);
   constexpr double kRealAxis = 2.785293563;  // RK4's 1 + z + z²/2 + z³/6 + z⁴/24 is 1 again.
   for (const double dt : {1e-3, 4e-3, 0.02}) {
@@ -261,7 +261,7 @@ TEST(TickGains, beyond_what_a_tick_integrates_are_refused) {
   EXPECT_NE(refusal(FPBM<kOpen>(0.6, ones, 1e300, 1e300), 1e-3), "");
 }
 
-TEST(TickGains, an_integral_beyond_Routh_is_refused) {
+TEST(TickGains, an_integral_beyond_the_Routh_bound_is_rejected) {
   for (const double dt : {1e-3, 4e-3, 0.02}) {
     const std::string message = refusal(fpbm(7), dt, 1000.0);
     const double most = number_after(message, "integral_gain = 1000: must be at most ");
@@ -404,7 +404,7 @@ TEST(TickGains, of_several_levels_have_the_roots_of_the_gains) {
 }
 
 /// With critical damping, the tip does not move, and the arm comes to rest.
-TEST(TickGains, a_stiff_rest_posture_leaves_the_task_alone) {
+TEST(TickGains, a_stiff_rest_posture_does_not_change_the_task) {
   const Preset panda = redundant()[0];
   for (const double dt : {1e-3, 0.02}) {
     TrackerOptions<> options;

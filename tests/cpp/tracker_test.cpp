@@ -96,7 +96,7 @@ template <typename Result>
 }
 
 /// For the class of the library. Its members are only looked up, not called.
-TEST(Tracker, promises_not_to_throw) {
+TEST(Tracker, is_noexcept) {
   using Own = Tracker<SerialArm<7>, Pose, AccelerationScheme<7>>;
   using Follower = PathFollower<AnyPath<Pose>>;
   const auto look = [](Own* tracker, Follower* follower, const Reference<Pose>& reference, const Vector<7>& q) {
@@ -111,7 +111,7 @@ TEST(Tracker, promises_not_to_throw) {
 }
 
 /// Far from every limit, a tick is bitwise a step of RK4.
-TEST(Tracker, takes_the_steps_of_a_rollout) {
+TEST(Tracker, has_the_steps_of_a_rollout) {
   const auto path = turning_circle();
   std::vector<Vector<7>> q;
   const State<7> start{bent(), Vector<7>::Zero()};
@@ -328,7 +328,7 @@ TEST(Tracker, does_not_chatter_beyond_the_workspace_boundary) {
 
 /// For an exact measured state, the result equals the result of the scheme if no limit is near, and is within the box
 /// otherwise. The state of the tracker does not change.
-TEST(Tracker, answers_for_a_measured_state) {
+TEST(Tracker, resolves_a_measured_state) {
   TrackerOptions<> exact;
   exact.measured_delay = 0;
   auto tracker = panda_tracker(settling(), exact);
