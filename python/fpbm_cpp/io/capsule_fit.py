@@ -84,7 +84,7 @@ def _nearest(points: Array, a: Array, b: Array) -> tuple[Array, Array]:
 
 
 def outermost(points: Array, radii: Array) -> tuple[Array, Array]:
-    """The points that are not in the convex hull of the others."""
+    """The points that are not in the convex hull of all other points."""
     spatial = extra("scipy.spatial", "a capsule that fits", "clearance")
     bare = points[radii == 0.0]
     if len(bare) > 4:

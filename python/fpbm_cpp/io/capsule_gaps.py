@@ -111,7 +111,7 @@ class Gaps:
 
 
 def _outer(link: Link) -> Shape:
-    """The points of a link that are not in the convex hull of the others."""
+    """The points of a link that are not in the convex hull of all other points."""
     whole = together([part.shape for part in link.parts])
     points, sizes = outermost(whole.points, whole.sizes)
     bare = np.repeat(points[sizes == 0.0][:, None], 2, axis=1)

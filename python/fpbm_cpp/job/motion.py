@@ -202,7 +202,7 @@ def filled(job: Table, arm: Arm | Robot) -> Table:
 
 
 def taken(job: Table, full: Table) -> dict[str, list[str]]:
-    """Defaults in the full job by section, for example 'k1 = 10', without those that are off."""
+    """Defaults in the full job by section, for example 'k1 = 10', without options that are off."""
     texts = {
         section: [*dict.fromkeys(_taken(job.get(section, {}), full[section]))] for section in ("path", "scheme", "run")
     }
