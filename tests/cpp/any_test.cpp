@@ -95,7 +95,7 @@ struct CountedArm : PlanarArm<4> {
   static inline int copies = 0;
 };
 
-TEST(AnyArm, shares_what_it_holds_with_its_copies) {
+TEST(AnyArm, shares_its_arm_with_its_copies) {
   const CountedArm arm;
   CountedArm::copies = 0;
   const AnyArm<Position<2>> any(arm);

@@ -147,7 +147,7 @@ void expect_to_keep_clear() {
   }
 }
 
-TEST(Guard, no_pair_comes_nearer_than_its_margin) {
+TEST(Guard, no_pair_is_closer_than_its_margin) {
   expect_to_keep_clear<Level::kAcceleration>();
   expect_to_keep_clear<Level::kVelocity>();
 }
