@@ -135,7 +135,7 @@ int main(int argc, char** argv) {
   beyond.x.p(0) += 1.0;  // [m], unreachable
 
   Histogram lateness, compute;
-  std::array<long, 6> seen{};  // Number of ticks with each status.
+  std::array<long, static_cast<std::size_t>(fpbm::Status::kNotFinite) + 1> seen{};  // Number of ticks with each status.
   long missed = 0;
   double error = 0.0, orientation_error = 0.0, speed = 0.0;
   std::signal(SIGINT, [](int) { interrupted = 1; });

@@ -337,7 +337,7 @@ RAIL = fp.Robot([fp.TreeJoint(fp.Joint()), fp.TreeJoint(fp.Joint("prismatic", na
         ),
         (
             lambda file: fp.Clearance.from_urdf(file, allowed=[("chest", "camera")], per_link=1),
-            "allowed[0] has 'chest': must be names of shapes",
+            "allowed[0] has 'camera': must be names of shapes",
         ),
         (
             lambda _: fp.Clearance.from_arms(ARMS, {"lift": BOTH["left"]}),

@@ -259,7 +259,7 @@ def test_measured_states_are_resolved(panda, balanced):
     assert np.abs(tick.errors["place"]).max() < 1e-6
     assert np.abs(tick.errors["upright"]).max() < 1e-3
     np.testing.assert_array_equal(tracker.q, READY)
-    with pytest.raises(ValueError, match="velocity-level"):
+    with pytest.raises(ValueError, match="velocity level"):
         fp.Tracker(panda, fp.MVN(), READY, stack=cup()).resolve_measured(q, qd, {})
 
 

@@ -15,10 +15,10 @@ namespace fpbm {
 /// Shortest duration to which a path of 1 s must be stretched so that the tip keeps its bounds. Velocities are
 /// proportional to 1/duration, accelerations to 1/duration².
 ///
-/// The maximum of the required duration over the path (share()) is found by branch and bound. The sample in the middle
-/// of an interval, and bounds on the derivatives in the interval, give an upper bound on the required duration of the
-/// whole interval. Intervals are halved until this upper bound is at most kSlack times the largest sample. Therefore,
-/// the search also finds narrow peaks between samples.
+/// The maximum of the required duration over the path (required_duration()) is found by branch and bound. The sample in
+/// the middle of an interval, and bounds on the derivatives in the interval, give an upper bound on the required
+/// duration of the whole interval. Intervals are halved until this upper bound is at most kSlack times the largest
+/// sample. Therefore, the search also finds narrow peaks between samples.
 template <typename Space, int M, typename Scalar>
 class LeastDuration {
   static constexpr bool kQuaternion = M > Space::kRows;
@@ -40,7 +40,8 @@ class LeastDuration {
     for (std::size_t i = 1; i < times.size(); ++i) {
       for (int k = 0; k < kSamples; ++k) {
         const Scalar fraction = Scalar(k) / Scalar(kSamples);
-        longest = std::max(longest, share(peaks(sample(times[i - 1] + fraction * (times[i] - times[i - 1])))));
+        longest =
+            std::max(longest, required_duration(peaks(sample(times[i - 1] + fraction * (times[i] - times[i - 1])))));
       }
     }
     if (!(longest > Scalar(0))) return Scalar(0);
@@ -53,8 +54,9 @@ class LeastDuration {
     return longest;
   }
 
-  /// A path is slower than the fastest path by up to 1 %: this slack is in the search and in Waypoints::within().
-  /// WaypointsBounds.* prints the largest difference. A tenth of the slack needs 1.7 times the samples for poses.
+  /// Waypoints::within() multiplies the result of the search by this slack, so that no bound is exceeded. The path is
+  /// then at most 0.5 % slower than the fastest path. WaypointsBounds.* prints the largest difference. A tenth of the
+  /// slack needs 1.7 times the samples for poses.
   static constexpr Scalar kSlack = Scalar(1.005);
 
  private:
@@ -70,7 +72,7 @@ class LeastDuration {
   }
 
   /// Required duration: a path of 1 s with these peaks keeps the bounds if it is stretched to this duration.
-  [[nodiscard]] Scalar share(const TipBounds<Scalar>& peak) const {
+  [[nodiscard]] Scalar required_duration(const TipBounds<Scalar>& peak) const {
     return std::max(std::max(peak.velocity / bounds_.velocity, peak.angular_velocity / bounds_.angular_velocity),
                     std::max(std::sqrt(peak.acceleration / bounds_.acceleration),
                              std::sqrt(peak.angular_acceleration / bounds_.angular_acceleration)));
@@ -84,8 +86,9 @@ class LeastDuration {
     // to just below kSlack need the same number of samples.
     constexpr Scalar kRaise = Scalar(1.004);
     const TipBounds<Scalar> here = peaks(sample(middle));
-    if (share(here) > kRaise * longest) longest = share(here);
-    if (halvings == 0 || share(limits(here, spline_.derivatives(i, middle), half)) <= kSlack * longest) return;
+    if (required_duration(here) > kRaise * longest) longest = required_duration(here);
+    if (halvings == 0 || required_duration(limits(here, spline_.derivatives(i, middle), half)) <= kSlack * longest)
+      return;
     search(sample, i, middle - half / Scalar(2), half / Scalar(2), halvings - 1, longest);
     search(sample, i, middle + half / Scalar(2), half / Scalar(2), halvings - 1, longest);
   }
@@ -138,7 +141,7 @@ class LeastDuration {
       result.angular_velocity = here.angular_velocity + half * turns.most(2);
       result.angular_acceleration = here.angular_acceleration + half * turns.most(3);
     }
-    // Infinity is replaced, since |Q| may be zero: share() would divide infinity by an infinite bound.
+    // Infinity is replaced, since |Q| may be zero: required_duration() would divide infinity by an infinite bound.
     if (!(result.angular_velocity <= kMost)) result.angular_velocity = kMost;
     if (!(result.angular_acceleration <= kMost)) result.angular_acceleration = kMost;
     return result;
