@@ -204,7 +204,9 @@ class Limits {
     return std::abs(qd) <= bounds_.velocity(i) && upper_[i].allows(q, qd) && lower_[i].allows(-q, -qd);
   }
 
-  /// Round-off error of the position of joint i and of its distances to the ends of its range [rad] or [m].
+  /// Round-off error of the position of joint i and of its distances to the ends of its range [rad] or [m]. The factor
+  /// 16 covers the two ends, the update of q in a tick and the envelope, each with a few ε of their sizes
+  /// (SlowJoints.let_a_tracker_start_from_the_state_of_another).
   [[nodiscard]] Scalar round_off(Eigen::Index i, Scalar q) const noexcept {
     Scalar size = std::abs(q);
     for (const Scalar end : {bounds_.lower(i), bounds_.upper(i)}) {
@@ -219,7 +221,8 @@ class Limits {
   Envelopes lower_;               ///< For −q.
   Eigen::Index jerk_bounds_ = 0;  ///< Number of joints with a bound on jerk.
 
-  /// c J/A² of a joint with a bound on jerk and without a given envelope (docs/limits.md, Bounds on jerk).
+  /// c J/A² of a joint with a bound on jerk and without a given envelope (docs/limits.md, Bounds on jerk). At least 1
+  /// is necessary. With 2, a stop along the envelope needs jerks of at most A²/c = J/2.
   static constexpr Scalar kOffset = Scalar(2);
 };
 
