@@ -27,11 +27,11 @@ template <int M, int N, int P, typename Scalar>
   /// μ as a fraction of ‖J‖²_F. The error of a tip that slides along a wall is proportional to μ: at most 0.2 mm, and
   /// 1.8 mm with 1e-3 (`fpbm_tests --gtest_filter='Guard.slides*'`).
   constexpr Scalar kNullSpaceCost = Scalar(1e-4);
-  /// Eigenvalue of A along δ if null-space motion contributes nothing (ν = 0). `fpbm_tests --gtest_filter='Guard*'`
-  /// passes with 1e-5 to 1e-2. With 0.1, the motion is so sensitive to round-off that
-  /// Guard.is_the_same_for_joints_counted_at_run_time fails.
+  /// Eigenvalue of A along δ if null-space motion contributes nothing (ν = 0). With 1e-5 to 1e-2,
+  /// Guard.is_the_same_for_joints_counted_at_run_time passes. With 0.1, the motion is so sensitive to round-off that
+  /// the test fails.
   constexpr Scalar kTaskChangeWeight = Scalar(1e-3);
-  /// ν from which on A = I. The same tests pass with 0.01, and fail with 0.
+  /// ν from which on A = I. The same test passes with 0.01, and fails with 0.
   constexpr Scalar kSufficientNullSpace = Scalar(0.1);
   const Scalar mu = kNullSpaceCost * squared_norm(J);
   const auto [delta, null_space_fraction] = smallest_task_change(J, mu, rows, desired);

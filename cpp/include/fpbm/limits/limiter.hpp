@@ -199,8 +199,8 @@ class Limiter {
   }
 
   /// Relative change c of a level in limit_with_rows() up to which its task scale is not reduced. The cost μ of
-  /// null-space motion (inverse_task_metric()) leaves a small c. `fpbm_tests --gtest_filter='Guard*'` passes
-  /// with 0 to 0.2.
+  /// null-space motion (inverse_task_metric()) leaves a small c. Guard.slides_along_a_wall passes with 0
+  /// to 1.
   static constexpr Scalar kNegligibleChange = Scalar(0.01);
 
   Limits<kLevel, N, Scalar> limits_;
