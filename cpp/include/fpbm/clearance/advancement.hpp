@@ -95,7 +95,8 @@ class Advancement {
  private:
   // Largest number of steps. Of 48,019 stopping trajectories of random motions among 26 near pairs that 16 steps
   // accept, 8 steps accept 48,002. With 8 steps, the longest tick of a clearance executes 25 % fewer instructions
-  // (bench/README.md, "The longest ticks"). With 2 steps, the arm of Guard.slides_along_a_wall moves by stops.
+  // (bench/README.md, "The longest ticks"). With 2 steps, rejected ticks increase the jerk in
+  // Guard.slides_along_a_wall 960 times.
   static constexpr int kAdvances = 8;
   /// A pair that is proved for this fraction of the remaining trajectory is not checked in the next step
   /// (bench/README.md, "The longest ticks").

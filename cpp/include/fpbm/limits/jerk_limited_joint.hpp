@@ -208,7 +208,8 @@ struct JerkLimitedJoint {
     return {u, u};
   }
 
-  /// Round-off error of a distance to one end [rad] or [m].
+  /// Round-off error of an excess over the envelope of one end [rad] or [m]. The distance to the end has an error of at
+  /// most ε (|q| + |r|). The factor 8 also covers the other terms of the excess.
   [[nodiscard]] static Scalar round_off(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar q) noexcept {
     return std::isfinite(envelope.stop_position)
                ? Scalar(8) * std::numeric_limits<Scalar>::epsilon() * (std::abs(q) + std::abs(envelope.stop_position))

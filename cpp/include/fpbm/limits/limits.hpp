@@ -78,6 +78,8 @@ class Limits {
                                                                 : "within the joint's range");
       }
       const Scalar qd = state.qd(i);
+      // A tick rounds q̇ + h a with an error of at most ε (|q̇| + h |a|). The factor 4 also covers the difference of two
+      // velocities from which `last` is computed.
       const Scalar rounding =
           Scalar(4) * std::numeric_limits<Scalar>::epsilon() * (std::abs(qd) + tick_ * std::abs(last(i)));
       const Scalar margin = slack / tick_ + rounding;
@@ -204,8 +206,8 @@ class Limits {
     return std::abs(qd) <= bounds_.velocity(i) && upper_[i].allows(q, qd) && lower_[i].allows(-q, -qd);
   }
 
-  /// Round-off error of the position of joint i and of its distances to the ends of its range [rad] or [m]. The factor
-  /// 16 covers the two ends, the update of q in a tick and the envelope, each with a few ε of their sizes
+  /// Round-off error of the position of joint i and of its distances to the ends of its range [rad] or [m]. One
+  /// distance has an error of at most ε (|q| + |end|). The factor 16 also covers the updates of q and of the envelopes
   /// (SlowJoints.let_a_tracker_start_from_the_state_of_another).
   [[nodiscard]] Scalar round_off(Eigen::Index i, Scalar q) const noexcept {
     Scalar size = std::abs(q);

@@ -156,7 +156,8 @@ class MeasuredLimiter {
   /// Smallest H [s]. Noise of ±0.001 rad/s on q̇ then causes accelerations of at most 0.5 % of 5 rad/s² after stop()
   /// (MeasuredDelay.every_preset_stops).
   static constexpr Scalar kQuiet = Scalar(0.014);
-  /// Changes of the braking acceleration above this fraction of its bound are not filtered.
+  /// Changes of the braking acceleration above this fraction of its bound are not filtered: 50 times the noise of 0.5 %
+  /// (kQuiet).
   static constexpr Scalar kLarge = Scalar(0.25);
   /// Smallest D/H: 1 + 1/√2, which minimises T.
   static constexpr Scalar kRest = Scalar(1.70710678118654752440);
