@@ -52,7 +52,8 @@ struct Obstacle {
     } else {
       const auto* wall = std::get_if<HalfSpace<Scalar>>(&shape);
       const Scalar length = wall->normal.norm();
-      if (!(std::abs(length - Scalar(1)) < Scalar(1e-4))) {
+      constexpr Scalar kTolerance = Scalar(1e-4);  // Distances have this relative error: 0.1 mm at 1 m.
+      if (!(std::abs(length - Scalar(1)) < kTolerance)) {
         validation::fail(argument + ".normal's length", length, "1");
       }
       if (!std::isfinite(wall->offset)) {

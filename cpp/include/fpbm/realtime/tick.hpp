@@ -49,19 +49,21 @@ template <typename Space, int N, typename Scalar>
 
 template <typename Scalar = double>
 struct TrackerOptions {
-  Scalar dt = Scalar(1e-3);  ///< Length of a tick [s].
+  Scalar dt = Scalar(1e-3);  ///< Length of a tick [s]. Default: the rate of libfranka.
   /// Largest error that the feedback uses, of the position [characteristic lengths of the arm] and of the orientation
-  /// [rad]. A larger error, for example of an unreachable target, does not increase the feedback.
+  /// [rad]. A larger error, for example of an unreachable target, does not increase the feedback. Default:
+  /// Stall.is_not_a_slow_approach passes with 0.1 to 1, and fails with 0.03.
   Scalar error_bound = Scalar(0.1);
   /// Gain kᵢ of ∫(x ⊖ f(q)) dt, which is added to the acceleration [1/s³] or velocity [1/s²] of the reference. It
   /// removes the steady-state error due to a constant bias (PID feedback: Guo et al. 2018). Stable below k₁k₂
   /// (docs/realtime.md, Integral of the error). The integral is constant while the task is slowed or damped, or the
-  /// error exceeds error_bound. It adds integral_bound at most [characteristic lengths and radians per s², or per s].
-  /// Each task of a stack has an integral.
+  /// error exceeds error_bound. It adds integral_bound at most [characteristic lengths and radians per s², or per s];
+  /// the default is not tuned. Each task of a stack has an integral.
   Scalar integral_gain = Scalar(0);
   Scalar integral_bound = Scalar(1);
   /// If an arm is slowed, or farther than error_bound from its target, and makes no progress for this time [s], the arm
-  /// stops until its target moves, or until resume(). Infinite: the arm never stalls.
+  /// stops until its target moves, or until resume(). Infinite: the arm never stalls. Default:
+  /// Stall.is_not_a_slow_approach passes with 2 and 5, and fails with 1.
   Scalar stall_time = Scalar(2);
   /// Damping near singular postures, for a scheme that has none.
   SingularDamping<Scalar> singular = SingularDamping<Scalar>();
@@ -78,7 +80,8 @@ struct TrackerOptions {
   /// point. No effect on resolve_measured(), and on a tracker of a single level.
   bool keep_first_level = false;
   /// Largest age of the states that are passed to resolve_measured() [ticks]: the time from the measurement to the
-  /// start of the tick in which the robot realises the command. 0: exact and current states, as in a simulation.
+  /// start of the tick in which the robot realises the command. Most robots need one to three ticks. 0: exact and
+  /// current states, as in a simulation.
   int measured_delay = 3;
 
   /// Damping for a scheme of an arm with dof joints, whose task has the given number of rows. Without a null space,

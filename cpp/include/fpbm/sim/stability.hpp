@@ -10,7 +10,8 @@
 namespace fpbm {
 
 /// Whether no root of (z−1)³ + a(z−1)² + b(z−1) + c is outside the unit circle, by Routh's criterion for w, where z =
-/// (1+w)/(1−w). Powers of z−1 keep their digits if the gains are small.
+/// (1+w)/(1−w). Powers of z−1 keep their digits if the gains are small. round_off: where a sum is near zero, its
+/// error is at most 12 ε (|a| + |b| + |c|). The factor 64 also covers the errors of a, b and c.
 template <typename Scalar>
 [[nodiscard]] bool is_in_unit_circle(Scalar a, Scalar b, Scalar c) noexcept {
   const Scalar w3 = Scalar(8) - Scalar(4) * a + Scalar(2) * b - c;
@@ -104,10 +105,15 @@ template <typename Scalar>
 /// smaller shares.
 template <typename Scalar, typename Holds>
 [[nodiscard]] Scalar largest_share(const Holds& holds) {
+  constexpr Scalar kNarrow = Scalar(1.00001);  // high/low at the end, for four digits.
+  constexpr Scalar kDivisor = Scalar(1024);
+  // At most 108 steps divide 1 by kDivisor until the result is 0, and 20 steps of bisection reduce high/low from
+  // kDivisor to kNarrow.
+  constexpr int kRounds = 200;
   Scalar low(0);
   Scalar high(1);
-  for (int i = 0; i < 200 && high > Scalar(1.00001) * low; ++i) {
-    const Scalar middle = low > Scalar(0) ? std::sqrt(low * high) : high / Scalar(1024);
+  for (int i = 0; i < kRounds && high > kNarrow * low; ++i) {
+    const Scalar middle = low > Scalar(0) ? std::sqrt(low * high) : high / kDivisor;
     (holds(middle) ? low : high) = middle;
   }
   if (!(low > Scalar(0))) return Scalar(0);

@@ -38,6 +38,7 @@ class TimeGrid {
     if (whole > kMostSteps) {
       validation::fail("dt", dt, "larger: the grid has more than 1e9 steps");
     }
+    // In float, the ratio of two rounded numbers has a relative error of at most 3ε/2, above 1e-9.
     constexpr double kRoundOff = 8.0 * static_cast<double>(std::numeric_limits<Scalar>::epsilon());
     if (std::abs(ratio - whole) > std::fmax(1e-9, kRoundOff) * whole) {
       char demand[128];
@@ -48,7 +49,7 @@ class TimeGrid {
     return static_cast<int>(whole);
   }
 
-  static constexpr double kMostSteps = 1e9;
+  static constexpr double kMostSteps = 1e9;  ///< The steps of motion and hold, and one sample, then fit an int.
 
   Scalar duration_;
   Scalar dt_;
