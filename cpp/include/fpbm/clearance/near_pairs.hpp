@@ -42,7 +42,7 @@ class NearPairs {
   void set_posture(const Clearance& clearance, const JointVector& q) noexcept {
     set_displacements(clearance, clearance.robot().drives().rates(JointVector(q - here_.state.q)).cwiseAbs());
     // The sum over n joints has an error of at most (n/2) ε of itself, and each addition of ε/2: 4 ε for 7 joints.
-    // NearPairs.are_those_of_the_distances_in_float compares the near pairs with those of the distances.
+    // NearPairs.are_those_of_the_distances_in_float compares the near pairs with the pairs found by distances alone.
     constexpr Scalar kRoundOff = Scalar(4) * std::numeric_limits<Scalar>::epsilon();
     for (std::size_t i = 0; i < lower_bound_.size(); ++i) {
       const ShapePair& pair = clearance.pairs()[i];

@@ -9,7 +9,7 @@
 
 namespace fpbm {
 
-/// Largest age of a measured state [ticks]. The tests go to 30 (MeasuredLimiter.no_bound_is_exceeded_at_any_age). With
+/// Largest age of a measured state [ticks]. The tests cover ages up to 30 (MeasuredLimiter.no_bound_is_exceeded_at_any_age). With
 /// 100, H is 410 ticks.
 inline constexpr int kMaxMeasuredDelay = 100;
 
