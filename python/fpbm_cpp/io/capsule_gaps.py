@@ -64,7 +64,7 @@ class Gaps:
         inverse = np.linalg.inv(frames)
         self._cases: dict[tuple[int, int], Array] = {}  # Poses of the second link, and their weights.
         self._weights: dict[tuple[int, int], Array] = {}
-        self._left_out: dict[tuple[int, int], Array] = {}
+        self._excluded: dict[tuple[int, int], Array] = {}
         hulls = [_outer(link) for link in links]
         for i, j in combinations(range(len(links)), 2):
             if not links[i].may_collide(links[j]):
@@ -72,7 +72,7 @@ class Gaps:
             poses = inverse[:, links[i].number] @ frames[:, links[j].number]
             gaps = capsules_apart(links[i].fits, links[j].fits, poses)
             if np.max(gaps) < margin:
-                self._left_out[i, j] = poses
+                self._excluded[i, j] = poses
                 continue
             apart, near = APART * margin, np.flatnonzero(gaps < self.close)
             wrong = [k for k in near if hulls_apart(hulls[i], hulls[j], poses[k], apart) >= apart]
@@ -99,7 +99,7 @@ class Gaps:
         kept, self.links[i].parts = self.links[i].parts, parts
         try:
             found = self.excess(*pair)
-            for (a, b), poses in self._left_out.items():
+            for (a, b), poses in self._excluded.items():
                 if (
                     i in (a, b)
                     and np.max(capsules_apart(self.links[a].fits, self.links[b].fits, poses)) > self.margin / 2
