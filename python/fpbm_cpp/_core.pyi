@@ -13,7 +13,6 @@ __all__: list[str] = [
     "Arm",
     "Clearance",
     "Kinematics",
-    "SaturatedMotion",
     "Limiter",
     "MAX_DOF",
     "Model",
@@ -24,6 +23,7 @@ __all__: list[str] = [
     "ROBOT_PRESETS",
     "Robot",
     "SaturatedLevels",
+    "SaturatedMotion",
     "Scheme",
     "Shape",
     "Status",
@@ -818,7 +818,7 @@ def check_sweep(
     dt: typing.SupportsFloat | typing.SupportsIndex,
     hold: typing.SupportsFloat | typing.SupportsIndex,
     task: str,
-    limited: typing.Any = None,
+    limit_options: typing.Any = None,
 ) -> tuple[numpy.typing.NDArray[numpy.float64], int]: ...
 def circle(
     radius: typing.SupportsFloat | typing.SupportsIndex,
@@ -875,7 +875,7 @@ def rollout(
     dt: typing.SupportsFloat | typing.SupportsIndex,
     hold: typing.SupportsFloat | typing.SupportsIndex,
     task: str,
-    limited: typing.Any = None,
+    limit_options: typing.Any = None,
 ) -> tuple[Status, float, int, dict[str, numpy.ndarray]]: ...
 def rotation(r: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
     """
@@ -937,7 +937,7 @@ def sweep_chunk(
     hold: typing.SupportsFloat | typing.SupportsIndex,
     task: str,
     motions: bool,
-    limited: typing.Any,
+    limit_options: typing.Any,
     stop: Stop,
 ) -> tuple[numpy.ndarray, list[dict[str, numpy.ndarray]]]: ...
 def tricuspid(

@@ -9,8 +9,8 @@
 
 namespace fpbm {
 
-/// Largest age of a measured state [ticks]. The tests cover ages up to 30 (MeasuredLimiter.no_bound_is_exceeded_at_any_age). With
-/// 100, H is 410 ticks.
+/// Largest age of a measured state [ticks]. The tests cover ages up to 30
+/// (MeasuredLimiter.no_bound_is_exceeded_at_any_age). With 100, H is 410 ticks.
 inline constexpr int kMaxMeasuredDelay = 100;
 
 /// Throws std::invalid_argument if delay [ticks] is not in [0, kMaxMeasuredDelay].
