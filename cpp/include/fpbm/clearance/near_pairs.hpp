@@ -48,8 +48,9 @@ class NearPairs {
       const ShapePair& pair = clearance.pairs()[i];
       const Scalar change = displacement_[pair.first] + (pair.world ? Scalar(0) : displacement_[pair.second]);
       lower_bound_[i] -= change + kRoundOff * (std::abs(lower_bound_[i]) + change);
-      if (pair.world && clearance.obstacles()[pair.second].moves != obstacle_moves_[pair.second])
+      if (pair.world && clearance.obstacles()[pair.second].moves != obstacle_moves_[pair.second]) {
         lower_bound_[i] = -kUnbounded;
+      }
       is_known_[i] = 0;
     }
     for (std::size_t i = 0; i < obstacle_moves_.size(); ++i) obstacle_moves_[i] = clearance.obstacles()[i].moves;

@@ -142,8 +142,9 @@ struct JerkLimitedJoint {
     // the excess is largest within the time `longest`.
     const Scalar top = std::max(qd + gain, Scalar(0));
     const Scalar longest = tick + (stop.acceleration + greatest) * inverse_jerk;
-    if (gain <= speed_slack && q - envelope.stop_position + excess_bound(envelope, top, longest) <= Scalar(0))
+    if (gain <= speed_slack && q - envelope.stop_position + excess_bound(envelope, top, longest) <= Scalar(0)) {
       return some.high;
+    }
     const Scalar high = within_velocity(speed_slack, some);
     if (!(envelope.stop_position < std::numeric_limits<Scalar>::infinity())) return high;
     const Scalar from = q - envelope.stop_position;

@@ -44,8 +44,9 @@ template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weig
   constexpr bool kForced = !std::is_same_v<Force, NoForce>;
   const bool braked = kLevel == Level::kAcceleration && status == Status::kDamped;
   const Vector<N, Scalar> y = gram.solved([&](const auto& solutions) noexcept -> Vector<N, Scalar> {
-    if (!(kForced || braked || null_space.template active<kLevel>()))
+    if (!(kForced || braked || null_space.template active<kLevel>())) {
       return solutions.motion(solutions.coefficients(v));
+    }
     Vector<N, Scalar> z = null_space.template at<kLevel>(state);
     if (braked) z = entrywise(z, [&](Eigen::Index i) { return z.coeff(i) - gram.brake() * state.qd.coeff(i); });
     Vector<N, Scalar> y0 = weights.inverse_root(z);

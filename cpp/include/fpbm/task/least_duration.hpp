@@ -87,8 +87,8 @@ class LeastDuration {
     constexpr Scalar kRaise = Scalar(1.004);
     const TipBounds<Scalar> here = peaks(sample(middle));
     if (required_duration(here) > kRaise * longest) longest = required_duration(here);
-    if (halvings == 0 || required_duration(limits(here, spline_.derivatives(i, middle), half)) <= kSlack * longest)
-      return;
+    const Scalar bound = required_duration(limits(here, spline_.derivatives(i, middle), half));
+    if (halvings == 0 || bound <= kSlack * longest) return;
     search(sample, i, middle - half / Scalar(2), half / Scalar(2), halvings - 1, longest);
     search(sample, i, middle + half / Scalar(2), half / Scalar(2), halvings - 1, longest);
   }
