@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "fpbm/limits/limiter.hpp"
 #include "fpbm/limits/row_projection.hpp"
 #include "fpbm/limits/smallest_task_change.hpp"
 #include "support/random.hpp"
@@ -117,7 +118,7 @@ TEST(SmallestTaskChange, is_along_a_surface_s_normal) {
 
 /// Share of the correction that is null-space motion: 1 if the row does not move the task, 0 if the row only moves the
 /// task.
-TEST(SmallestTaskChange, has_the_share_of_null_space_motion) {
+TEST(SmallestTaskChange, has_the_fraction_of_null_space_motion) {
   for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(trials(200)); ++seed) {
     Random random(seed);
     const Matrix<3, 7> J = random.uniform(3, 7, -1.0, 1.0);
@@ -150,6 +151,37 @@ TEST(SmallestTaskChange, is_zero_if_rows_admit_the_motion) {
   EXPECT_EQ(smallest_task_change(J, 1e-3, rows, Vector<7>(Vector<7>::Ones())).delta, Vector<3>(Vector<3>::Zero()));
   EXPECT_EQ(smallest_task_change(Matrix<3, 7>(Matrix<3, 7>::Zero()), 0.0, rows, Vector<7>(Vector<7>::Ones())).delta,
             Vector<3>(Vector<3>::Zero()));
+}
+
+/// Without limits, the limited motion satisfies the rows, and the task scale is 1 minus the relative change of the
+/// task. Changes of up to 1 % do not reduce the scale.
+TEST(LimiterRows, scale_the_task_by_its_relative_change) {
+  constexpr int kJoints = 7;
+  const Limiter<Level::kAcceleration, kJoints> limiter(
+      Limits<Level::kAcceleration, kJoints>(JointLimits<kJoints>::none(kJoints), 1e-3));
+  const Vector<kJoints> zero = Vector<kJoints>::Zero();
+  int reduced = 0;
+  int full = 0;
+  for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(trials(2000)); ++seed) {
+    Random random(seed);
+    const Matrix<3, kJoints> J = random.uniform(3, kJoints, -1.0, 1.0);
+    const Vector<kJoints> desired = random.uniform(kJoints, -5.0, 5.0);
+    Rows<kJoints, kRows> rows;
+    rows.count = static_cast<Eigen::Index>(1 + seed % 3);
+    for (Eigen::Index k = 0; k < rows.count; ++k) {
+      rows.g.col(k) = seed % 2 == 0 ? Vector<kJoints>(J.transpose() * random.uniform(3, -1.0, 1.0))
+                                    : Vector<kJoints>(random.uniform(kJoints, -1.0, 1.0));
+      rows.b(k) = rows.g.col(k).dot(desired) - random.uniform(-1.0, 3.0);
+    }
+    const auto found = limiter.motion(J, State<kJoints>{zero, zero}, desired, zero, rows);
+    for (Eigen::Index k = 0; k < rows.count; ++k) ASSERT_LE(rows.excess(k, found.u), 1e-7) << "seed " << seed;
+    const double change = (J * (found.u - desired)).norm() / (J * desired).norm();
+    const double expected = change <= 0.01 ? 1.0 : std::max(1.0 - change, 0.0);
+    ASSERT_NEAR(found.scale, expected, 1e-9) << "seed " << seed;
+    (expected < 1.0 ? reduced : full) += 1;
+  }
+  EXPECT_GT(reduced, 500);
+  EXPECT_GT(full, 500);
 }
 
 }  // namespace

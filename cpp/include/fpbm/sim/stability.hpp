@@ -23,20 +23,6 @@ template <typename Scalar>
   return holds(w3) && holds(w2) && holds(w1) && holds(c) && (w2 + round_off) * w1 >= w3 * c;
 }
 
-/// is_in_unit_circle() for (z−1)⁴ + a(z−1)³ + b(z−1)² + c(z−1) + d.
-template <typename Scalar>
-[[nodiscard]] bool is_in_unit_circle(Scalar a, Scalar b, Scalar c, Scalar d) noexcept {
-  const Scalar w4 = Scalar(16) - Scalar(8) * a + Scalar(4) * b - Scalar(2) * c + d;
-  const Scalar w3 = Scalar(8) * (a - b) + Scalar(6) * c - Scalar(4) * d;
-  const Scalar w2 = Scalar(4) * b - Scalar(6) * (c - d);
-  const Scalar w1 = Scalar(2) * c - Scalar(4) * d;
-  const Scalar round_off =
-      Scalar(64) * std::numeric_limits<Scalar>::epsilon() * (std::abs(b) + std::abs(c) + std::abs(d));
-  const auto holds = [&](Scalar value) { return value >= -round_off; };
-  return holds(w4) && holds(w3) && holds(w2) && holds(w1) && holds(d) &&
-         (w3 * w2 - w4 * w1 + round_off) * w1 >= w3 * w3 * d;
-}
-
 /// Whether a tick damps ë = −x₁ė − x₂e − x₃I. The integral I increases at the end of a tick by e at the start of the
 /// tick. Both forms of a tick must be stable: a step of RK4, and a step with the mean acceleration of RK4, as with
 /// bounds on jerk and other limits.
