@@ -198,8 +198,8 @@ class Limiter {
     return found;
   }
 
-  /// Relative change c of a level in limit_with_rows() up to which its task scale is not reduced. A definition: the cost
-  /// μ of null-space motion (inverse_task_metric()) leaves a small c, which is not reported as a blocked task
+  /// Relative change c of a level in limit_with_rows() up to which its task scale is not reduced. A definition: the
+  /// cost μ of null-space motion (inverse_task_metric()) leaves a small c, which is not reported as a blocked task
   /// (LimiterRows.scale_the_task_by_its_relative_change).
   static constexpr Scalar kNegligibleChange = Scalar(0.01);
 
