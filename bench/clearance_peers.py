@@ -38,14 +38,14 @@ class Scenario(NamedTuple):
     obstacles: list[Obstacle]
     path: fp.Path
     hold: float
-    slide: tuple[float, float] = (0.0, 0.0)  # From when to when along a wall whose normal is x [s].
+    slide: tuple[float, float] = (0.0, 0.0)  # Start and end of the motion along a wall whose normal is x [s].
 
 
 class Motion(NamedTuple):
     q: Array
     tips: Array
     failed: int
-    time: float  # Median of a tick, of the processor [µs].
+    time: float  # Median processor time of a tick [µs].
 
 
 # One tick: from x, xd and xdd to the next posture, and whether the tick succeeded.

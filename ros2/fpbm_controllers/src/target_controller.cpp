@@ -118,7 +118,7 @@ TargetController::Joints TargetController::start() {
     if (state_interfaces_.size() == dof) continue;
     const double velocity = state_interfaces_[dof + k].get_optional().value_or(0.0);
     require(std::abs(velocity) <= limits_->bounds().acceleration(i) * dt_, k,
-            "it moves faster than it can stop in a tick: activate once the arm is at rest");
+            "moves too fast to stop within a tick: activate when the arm is at rest");
   }
   if (!follows) q = measured_;
   const JointLimits& bounds = limits_->bounds();
@@ -126,7 +126,7 @@ TargetController::Joints TargetController::start() {
     const auto i = static_cast<Eigen::Index>(k);
     constexpr double kRoundOff = 1e-9;
     require(bounds.lower(i) - kRoundOff <= q(i) && q(i) <= bounds.upper(i) + kRoundOff, k,
-            "it is beyond its range: move it back, then activate again");
+            "is beyond its range: move the joint back, then activate again");
   }
   return q;
 }
