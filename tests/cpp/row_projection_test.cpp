@@ -180,8 +180,8 @@ TEST(LimiterRows, scale_the_task_by_its_relative_change) {
     ASSERT_NEAR(found.scale, expected, 1e-9) << "seed " << seed;
     (expected < 1.0 ? reduced : full) += 1;
   }
-  EXPECT_GT(reduced, 500);
-  EXPECT_GT(full, 500);
+  EXPECT_GT(reduced, trials(2000) / 8);
+  EXPECT_GT(full, trials(2000) / 8);
 }
 
 }  // namespace
