@@ -273,8 +273,9 @@ wheel: sdist
 clean:
 	rm -rf build dist $(VENV) demo
 
-# The package with its command line, and the packages of a dependency group in pyproject.toml. With --no-compile, pip does
-# not compile all modules of a package. Python compiles a module at its first import, and the tests import few modules.
+# The package with its command line, and the packages of a dependency group in pyproject.toml. With --no-compile, pip
+# does not compile all modules of a package. Python compiles a module at its first import, and the tests import few
+# modules.
 $(VENV)/package: $(PACKAGE)
 	PYTHON=$(PYTHON) tools/venv.sh $(VENV)
 	$(BIN)/python -m pip install '$(or $(WHEEL),.)[cli]'
