@@ -6,12 +6,12 @@ BIN := $(VENV)/bin
 OUT ?= demo
 SECONDS ?= 600
 JOBS ?= $(shell nproc)
-# A wheel to install instead of building the package from its sources.
+# Wheel to install. If empty, the package is built from its sources.
 WHEEL ?=
 PACKAGE := $(shell find cpp python cmake -type f -not -name '*.pyc') CMakeLists.txt pyproject.toml
 EIGEN := /usr/include/eigen3/Eigen/Core:libeigen3-dev
 GTEST := /usr/include/gtest/gtest.h:libgtest-dev
-# The part of clang++'s runtime for that sanitizer, which Debian has in a package of its own.
+# Runtime library of clang++ for a sanitizer or the fuzzer, from a separate Debian package.
 clang_library = $$(clang++ -print-file-name=libclang_rt.$(1)-$$(uname -m).a):libclang-rt-dev
 BENCHMARK := /usr/include/benchmark/benchmark.h:libbenchmark-dev
 CXX_SOURCES = $(shell find cpp python tests bench examples web ros2 -name '*.[ch]pp')
@@ -61,7 +61,7 @@ page:
 
 test: test-cpp test-python
 
-# LAWS=OFF leaves out the laws, for example in make clang after make sanitize, which has the same compiler.
+# LAWS=OFF omits the laws, for example in `make clang` after `make sanitize`: both use the same compiler.
 test-cpp: preset = release
 clang: preset = clang
 sanitize: preset = sanitize
@@ -73,7 +73,7 @@ test-cpp clang sanitize nightly:
 	cmake --build --preset $(preset) --parallel $(JOBS)
 	ctest --preset $(preset) --parallel $(JOBS)
 
-# Other kinds of machines, by cross compilers and emulators.
+# Other platforms, with cross compilers and emulators.
 QEMU_ARM64 := qemu-aarch64 -L /usr/aarch64-linux-gnu
 arm64 windows: preset = $@
 arm64 windows: cross
@@ -82,14 +82,14 @@ arm64 windows: cross
 	cmake --build --preset $(preset) --parallel $(JOBS)
 	WINEDEBUG=-all ctest --preset $(preset) --parallel $(JOBS)
 
-# In an emulated Python, which is slow; TESTS=tests/python for all.
+# Few tests by default, because the emulated Python is slow. TESTS=tests/python runs all tests.
 arm64-wheel: TESTS ?= $(addprefix tests/python/test_,resolver.py simulate.py model.py serial_arm.py track.py clearance.py)
 arm64-wheel:
 	tools/need.sh cmake ninja:ninja-build $(EIGEN) aarch64-linux-gnu-g++:g++-aarch64-linux-gnu qemu-aarch64:qemu-user
 	PYTHON=$(PYTHON) tools/venv.sh $(VENV)
 	PYTHON=$(BIN)/python tools/arm64_wheel.sh build/arm64-wheel $(TESTS)
 
-# Zig has the libraries that programs for macOS are linked with; the programs are not run here.
+# Zig has the libraries for linking macOS programs. The programs are not executed.
 macos: $(VENV)/macos
 	tools/need.sh cmake ninja:ninja-build $(EIGEN) /usr/src/googletest/CMakeLists.txt:googletest
 	for preset in macos-aarch64 macos-x86_64; do \
@@ -98,7 +98,8 @@ macos: $(VENV)/macos
 	    -DPython_INCLUDE_DIR=$$(python -c 'import sysconfig; print(sysconfig.get_path("include"))') && \
 	  cmake --build --preset $$preset --parallel $(JOBS) || exit 1; done
 
-# The same digits on x86-64 under Windows, and to round-off on Arm, where a product and a sum are rounded once.
+# Compares motions with the motions on this machine: bitwise equal on x86-64 under Windows, and equal up to round-off
+# on Arm, where fused multiply-add rounds once.
 cross:
 	tools/need.sh g++ aarch64-linux-gnu-g++:g++-aarch64-linux-gnu qemu-aarch64:qemu-user \
 	  x86_64-w64-mingw32-g++-posix:g++-mingw-w64-x86-64-posix wine:wine clang++:clang $(EIGEN)
@@ -123,7 +124,7 @@ packages: $(VENV)/packages
 	tools/need.sh g++ cmake $(EIGEN)
 	PATH="$(CURDIR)/$(BIN):$$PATH" packaging/try.sh build/packages
 
-# A bare Cortex-M7 in qemu, beside the same program here.
+# The program on a Cortex-M7 without an operating system, in qemu, compared with the same program on this machine.
 firmware:
 	tools/need.sh g++ cmake arm-none-eabi-g++:gcc-arm-none-eabi qemu-system-arm $(EIGEN) \
 	  /usr/lib/arm-none-eabi/newlib/nano.specs:libnewlib-arm-none-eabi \
@@ -134,7 +135,7 @@ firmware:
 	cmake --build build/firmware/host
 	$(PYTHON) tests/firmware/check.py build/firmware/board/firmware build/firmware/host/firmware
 
-# A day at 1 kHz, or TICKS of it.
+# A day at 1 kHz, or a given number of TICKS.
 soak: TICKS ?= 8.64e7
 soak:
 	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN) $(GTEST)
@@ -142,11 +143,11 @@ soak:
 	cmake --build --preset release --target fpbm_soak
 	build/release/tests/cpp/fpbm_soak $(TICKS)
 
-# Takes two hours of processor time.
+# Needs two hours of processor time.
 motions: $(VENV)/package
 	$(BIN)/python tests/soak/stack_motions.py
 
-# Takes half an hour of processor time.
+# Needs half an hour of processor time.
 grasp: MOTIONS ?= 10000
 grasp: $(VENV)/package
 	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN)
@@ -155,12 +156,12 @@ grasp: $(VENV)/package
 	$(BIN)/python bench/grasp_peers.py
 	build/bench/bench/bench_grasp $(MOTIONS)
 
-# Other libraries' programs beside those here; each library is installed into build/stack_peers.
+# Programs of other libraries, compared with programs of this library. Each library is installed into build/stack_peers.
 peers: $(VENV)/package $(VENV)/test
 	-tools/need.sh /usr/lib/python3/dist-packages/PyKDL$(call SUFFIX,/usr/bin/python3):python3-pykdl
 	FPBM_PEERS=build/stack_peers $(BIN)/python -m pytest tests/docs/test_coming_from.py -s
 
-# The corpus stays in build/fuzz, so that the next run continues from it.
+# The next run continues from the corpus in build/fuzz.
 fuzz:
 	tools/need.sh clang++:clang cmake ninja:ninja-build $(EIGEN)
 	tools/need.sh $(call clang_library,fuzzer)
@@ -173,7 +174,7 @@ fuzz:
 test-python: $(VENV)/package $(VENV)/test $(VENV)/peers
 	$(BIN)/python -m pytest --numprocesses $(JOBS)
 
-# Capsules of every robot's meshes, and whether its home posture keeps the default margin.
+# Fits capsules to the meshes of every robot, and tests whether the home posture of each robot keeps the default margin.
 homes: $(VENV)/package $(VENV)/test $(VENV)/peers
 	FPBM_ALL_HOMES=1 $(BIN)/python -m pytest tests/python/test_home_postures.py tests/python/test_capsules.py --numprocesses $(JOBS)
 
@@ -196,7 +197,7 @@ lint: $(VENV)/package $(VENV)/lint
 	$(BIN)/python tools/stubs.py --check
 	$(BIN)/python -m mypy.stubtest fpbm_cpp._core --mypy-config-file pyproject.toml --allowlist tools/stubtest.txt
 
-# Sentences drawn at random from pages, comments and messages; another SEED draws others.
+# Prints random sentences from pages, comments and messages. SEED selects the sentences.
 prose: SEED ?= 1
 prose: COUNT ?= 20
 prose:
@@ -228,7 +229,7 @@ test-docs: $(VENV)/package $(VENV)/test $(VENV)/docs
 	tools/need.sh g++ cmake $(EIGEN)
 	$(BIN)/python -m pytest tests/docs --numprocesses $(JOBS)
 
-# QUICK=1 takes a minute or two once all is built, and is rough. All of it: a quarter of an hour.
+# After the build, all benchmarks need a quarter of an hour. QUICK=1 is less accurate, and needs one or two minutes.
 bench: $(VENV)/package $(VENV)/test $(VENV)/bench
 	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN) $(BENCHMARK)
 	-tools/need.sh valgrind /usr/include/kdl/chain.hpp:liborocos-kdl-dev
@@ -236,14 +237,15 @@ bench: $(VENV)/package $(VENV)/test $(VENV)/bench
 	cmake --build --preset bench --parallel $(JOBS)
 	$(BIN)/python bench/run.py build/bench/bench $(if $(QUICK),--quick)
 
-# Fails if a step takes more instructions than recorded; RECORD=1 records them.
+# Fails if a step has more instructions than recorded. RECORD=1 records the numbers.
 count:
 	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN) valgrind
 	cmake --preset bench
 	cmake --build --preset bench --target bench_count
 	$(PYTHON) bench/count.py build/bench/bench/bench_count $(if $(RECORD),--record)
 
-# The longest ticks that a search has found: times, and instructions. SEARCH=600: searches on for so many seconds a case.
+# Times and instructions of the longest ticks that a search has found. SEARCH=600 continues the search for 600 s per
+# case.
 worst:
 	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN) $(BENCHMARK) valgrind
 	cmake --preset bench
@@ -253,8 +255,8 @@ worst:
 	build/bench/bench/bench_worst 50
 	$(PYTHON) bench/worst.py build/bench/bench/bench_worst
 
-# Fails if a step has more loads that wait for stores than recorded; RECORD=1 records them. After count where make runs
-# both, since they compile one program.
+# Fails if a step has more loads that wait for stores than recorded. RECORD=1 records the numbers. If make runs both
+# `count` and `stalls`, `stalls` is second, because both compile the same program.
 stalls: $(filter count,$(MAKECMDGOALS))
 	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN) valgrind
 	cmake --preset bench
@@ -271,8 +273,9 @@ wheel: sdist
 clean:
 	rm -rf build dist $(VENV) demo
 
-# The package with its command line, and the tools of a dependency group in pyproject.toml. With --no-compile, Python compiles
-# a tool's module when a program first imports the module: the tests import few of them.
+# The package with its command line, and the packages of a dependency group in pyproject.toml. With --no-compile, pip
+# does not compile all modules of a package. Python compiles a module at its first import, and the tests import few
+# modules.
 $(VENV)/package: $(PACKAGE)
 	PYTHON=$(PYTHON) tools/venv.sh $(VENV)
 	$(BIN)/python -m pip install '$(or $(WHEEL),.)[cli]'
@@ -282,20 +285,20 @@ $(VENV)/test $(VENV)/lint $(VENV)/browser $(VENV)/docs: pyproject.toml | $(VENV)
 	$(BIN)/python -m pip install --quiet --no-compile --group $(notdir $@)
 	@touch $@
 
-# Tools for distributions and for cross-compilation need no installed package.
+# Tools for distribution and cross-compilation do not need the installed package.
 $(VENV)/wheel $(VENV)/macos $(VENV)/packages: pyproject.toml
 	PYTHON=$(PYTHON) tools/venv.sh $(VENV)
 	$(BIN)/python -m pip install --quiet --group $(notdir $@)
 	@touch $@
 
-# Peers that are timed from Python, if they are available.
+# Other libraries for the benchmarks from Python. Unavailable libraries are skipped.
 $(VENV)/bench: pyproject.toml | $(VENV)/package
 	-for peer in pinocchio qp tsid toolbox pink mink; do $(BIN)/python -m pip install --quiet --group bench-$$peer; done
 	@touch $@
 
-# Peers that arms and motions are compared with, if they are available: tests without their peer are skipped. ManipulaPy
-# is read for its URDFs only, and the packages after ManipulaPy for their meshes, so they are installed without
-# dependencies. Debian's PyKDL is for a Python of Debian's version.
+# Other libraries for comparisons of arms and motions. If a library is unavailable, its tests are skipped. The tests use
+# only the URDF files of ManipulaPy, and only the meshes of the packages after ManipulaPy. Therefore, these packages are
+# installed without dependencies. Debian's PyKDL requires the Python version of Debian.
 SUFFIX = $(shell $(1) -c 'import sysconfig; print(sysconfig.get_config_var("EXT_SUFFIX"))' 2> /dev/null)
 $(VENV)/peers: pyproject.toml | $(VENV)/package
 	-for group in peers franka; do $(BIN)/python -m pip install --quiet --no-compile --group $$group; done

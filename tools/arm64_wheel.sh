@@ -1,9 +1,10 @@
 #!/bin/sh
-# Builds the package's wheel for 64-bit Arm into FOLDER/dist, and runs tests of it under qemu.
-#   PYTHON=… arm64_wheel.sh FOLDER [arguments of pytest], with a Python that has pip
+# Builds the wheel of the package for 64-bit Arm into FOLDER/dist, and tests the wheel under qemu.
+#   PYTHON=… arm64_wheel.sh FOLDER [arguments of pytest]
+# PYTHON must have pip.
 #
-# Debian's Python for Arm is unpacked into FOLDER/root, and run there by qemu: nothing of this system is changed. CMake
-# and the cross compiler, which it starts, run at full speed.
+# qemu runs Debian's Python for Arm, which is unpacked into FOLDER/root. The packages of this system do not change.
+# CMake and the cross compiler are not emulated.
 set -eu
 mkdir -p "$1"
 folder=$(cd "$1" && pwd)
@@ -13,7 +14,7 @@ python=$root/usr/bin/python-arm64
 here=$(cd "$(dirname "$0")/.." && pwd)
 
 if ! test -x "$python"; then
-    # apt's lists and packages for the other architecture, in folders of their own.
+    # Separate folders for the lists and packages of apt for Arm.
     apt=$folder/apt
     rm -rf "$root" "$apt"
     mkdir -p "$root" "$apt/lists/partial" "$apt/cache/archives/partial"
@@ -25,7 +26,7 @@ if ! test -x "$python"; then
     get update
     get install --yes --download-only --no-install-recommends python3 python3-distutils libpython3-dev libstdc++6 > /dev/null
     for package in "$apt"/cache/archives/*.deb; do dpkg -x "$package" "$root"; done
-    # From its name, Python finds its folder, and the command to start it again.
+    # Python uses argv[0] (-0) to find its prefix, and to start itself again.
     cat > "$python" << RUN
 #!/bin/sh
 exec qemu-aarch64 -L '$root' -0 "\$0" '$root/usr/bin/python3' "\$@"
@@ -42,7 +43,8 @@ fi
 "$python" -m pip install --quiet --only-binary :all: scikit-build-core pybind11 numpy --group "$here/pyproject.toml:test"
 
 rm -rf "$folder/dist"
-# Without isolation, in which pip would fetch a Ninja for Arm. Debian's Python looks for one of its headers in the folder above.
+# With build isolation, pip would install a Ninja for Arm. A header of Debian's Python includes a header from
+# $root/usr/include.
 CMAKE_ARGS="-DCMAKE_TOOLCHAIN_FILE=$here/cmake/toolchains/arm64.cmake" CXXFLAGS="-idirafter $root/usr/include" \
     "$python" -m pip wheel --quiet --no-build-isolation --no-deps --wheel-dir "$folder/dist" "$here"
 "$python" -m pip install --quiet --no-deps --force-reinstall "$folder"/dist/*.whl

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Runs a command as on a machine that has no network, and no Eigen of its own; where this system lets us.
+# Runs a command without network access and without the installed Eigen. If the system permits no namespaces, the
+# command has both.
 #   bare.sh COMMAND ...
 set -eu
 if ! unshare --map-root-user --net --mount true 2> /dev/null; then

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Makes sure that programs and headers are there, by installing Debian packages where they are not.
+# Installs the Debian packages of missing programs and headers.
 #   need.sh PROGRAM[:PACKAGE] | /PATH/OF/HEADER:PACKAGE ...
 set -eu
 
@@ -26,9 +26,9 @@ else
     exit 1
 fi
 echo "Installing:$missing"
-# One at a time, where make runs several.
+# A parallel make may run several installations: a lock serialises them.
 exec 9> "${TMPDIR:-/tmp}/fpbm_need.$(id -u).lock"
 if command -v flock > /dev/null; then flock 9; fi
 export DEBIAN_FRONTEND=noninteractive
-# shellcheck disable=SC2086 # A list of packages and an empty or one-word command are meant to be split.
+# shellcheck disable=SC2086 # Word splitting is intended: $missing is a list, and $sudo may be empty.
 $sudo apt-get update -qq && $sudo apt-get install -y -qq --no-install-recommends $missing > /dev/null

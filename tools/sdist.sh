@@ -1,6 +1,7 @@
 #!/bin/sh
-# Writes the source distribution to dist/, and checks that it has the files for building and testing, and no other
-# files. sdist.sh PYTHON, one with the packages of the group wheel
+# Writes the source distribution to dist/, and checks that the archive has only the files for building and testing.
+#   sdist.sh PYTHON
+# PYTHON must have the packages of the dependency group `wheel`.
 set -eu
 python=$1
 rm -rf dist

@@ -1,6 +1,7 @@
 #!/bin/sh
-# Installs a wheel into an empty environment, offline and with Python as the only program in PATH; runs a small test
-# with NumPy alone, and then the Python tests. try_wheel.sh PYTHON WHEEL WHEELHOUSE
+# Installs a wheel into an empty environment, offline and with only the programs of this environment in PATH. Runs a
+# small test with NumPy only, then the Python tests.
+#   try_wheel.sh PYTHON WHEEL WHEELHOUSE
 set -eu
 trial=build/trial
 wheel=$2

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Makes a virtual environment that can build this package, unless it is there already.
+# Creates a virtual environment that can build this package, unless the environment exists.
 #   venv.sh FOLDER
 set -eu
 here=$(dirname "$0")

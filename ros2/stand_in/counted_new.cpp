@@ -1,4 +1,4 @@
-// Counts the allocations of the test, by its own operators new.
+// Counts the allocations of the test by replacing the operators new.
 
 #include "counted_new.hpp"
 

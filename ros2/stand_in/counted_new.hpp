@@ -2,7 +2,7 @@
 
 namespace stand_in {
 
-/// How often operator new was called.
+/// Number of calls of operator new.
 inline long allocations = 0;
 
 }  // namespace stand_in

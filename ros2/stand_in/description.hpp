@@ -26,8 +26,8 @@ inline urdf::Joint& add(urdf::Model& model, const std::string& joint, const std:
   return *made;
 }
 
-/// Adds a chain from link parent to a link "flange", with the chain's names and bounds of joints, all behind a prefix.
-/// at: the chain's base in the parent's frame.
+/// Adds a chain from the link `parent` to a link "flange", with the joint names and bounds of the chain. All added
+/// names contain the prefix. at: pose of the base of the chain in the frame of `parent`.
 inline void add_chain(urdf::Model& model, const fpbm::Chain<>& chain, std::string parent,
                       const std::string& prefix = "", fpbm::Transform<> at = {}) {
   for (const auto& joint : chain.joints) {
@@ -50,8 +50,8 @@ inline void add_chain(urdf::Model& model, const fpbm::Chain<>& chain, std::strin
   add(model, "to_" + prefix + "flange", parent, prefix + "flange", chain.tip);
 }
 
-/// The robot_description of a chain from link "base" to link "flange". Link "base" is turned in "base_link", the root,
-/// as a UR's.
+/// The robot_description of a chain from link "base" to link "flange". Link "base" is rotated relative to the root
+/// "base_link", as in the description of a UR.
 [[nodiscard]] inline urdf::Model description_of(const fpbm::Chain<>& chain) {
   urdf::Model model;
   model.links_["base_link"] = std::make_shared<urdf::Link>(urdf::Link{"base_link", nullptr});

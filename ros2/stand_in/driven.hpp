@@ -16,8 +16,8 @@ namespace stand_in {
 
 enum class Lifecycle { kUnconfigured, kInactive, kActive, kFinalized };
 
-/// Joints that follow their commands with a lag and an offset, and a controller manager that loads the controller and
-/// calls it. Watches every call: the allocations, and by how much a limit is exceeded.
+/// Joints that follow their commands with a lag and an offset, and a controller manager that loads and calls the
+/// controller. Records the allocations and the largest excess over the limits in all calls.
 template <std::size_t Dof>
 class Driven {
  public:
@@ -27,14 +27,14 @@ class Driven {
   using CallbackReturn = controller_interface::CallbackReturn;
   using Overrides = std::map<std::string, rclcpp::ParameterValue>;
 
-  /// At rest at a posture. Replaces the parameters of the last test by defaults.
+  /// start: posture at rest. Resets the parameters to their defaults.
   Driven(const std::string& robot_description, const JointLimits& limits, const Joints& start)
       : description{"targets", robot_description, 0, 0, {}}, q(start), limits_(limits) {
     parameters = {};
-    command.fill(std::numeric_limits<double>::quiet_NaN());  // As hardware that was never commanded.
+    command.fill(std::numeric_limits<double>::quiet_NaN());  // Like hardware before the first command.
   }
 
-  /// Loads and configures. False if the controller refuses.
+  /// Loads and configures the controller. Returns false if the controller rejects its parameters.
   [[nodiscard]] bool load(const Overrides& overrides = {}) {
     description.controller_manager_update_rate = description.update_rate = rate;
     if (controller_->init(description, overrides) != controller_interface::return_type::OK) return false;
@@ -56,7 +56,7 @@ class Driven {
     }
     controller_->assign_interfaces(std::move(commands), std::move(states));
     last_velocity_ = last_acceleration_ = {};
-    // An arm that does not follow its command starts at its measured posture.
+    // If the arm does not follow its command, the controller starts at the measured posture.
     for (std::size_t i = 0; i < kDof; ++i) last_[i] = std::abs(command[i] - q[i]) < 0.05 ? command[i] : q[i];
     first_ = true;
     seconds_since_call_ = 0.0;
@@ -70,9 +70,10 @@ class Driven {
     controller_->release_interfaces();
   }
 
-  /// A tick of the manager and of the hardware: the joints that are not held follow the command of lag ticks ago.
+  /// A tick of the manager and of the hardware. Unless the arm is held, its joints follow the command from `lag` ticks
+  /// ago.
   void tick() { tick(1.0 / rate); }
-  /// The same, some seconds after the last.
+  /// A tick `period` [s] after the last tick.
   void tick(double period) {
     const double own = controller_->get_update_rate();
     seconds_since_call_ += period;
@@ -97,7 +98,7 @@ class Driven {
     for (int i = 0; i < count; ++i) tick();
   }
 
-  /// The fastest joint's velocity in the last tick [rad/s].
+  /// Largest joint speed in the last tick [rad/s].
   [[nodiscard]] double speed() const {
     double fastest = 0.0;
     for (const double v : last_velocity_) fastest = std::max(fastest, std::abs(v));
@@ -113,7 +114,7 @@ class Driven {
             const rclcpp::QoS& offered = rclcpp::SystemDefaultsQoS()) {
     subscription<Message>(topic)->hear(message, offered);
   }
-  /// Fires the node's timers.
+  /// Fires the timers of the node, then returns the publisher of a topic.
   template <typename Message>
   [[nodiscard]] const rclcpp::Publisher<Message>& said(const std::string& topic) {
     for (const auto& timer : controller_->get_node()->timers) {
@@ -121,7 +122,7 @@ class Driven {
     }
     return *std::any_cast<std::weak_ptr<rclcpp::Publisher<Message>>>(topics().at(topic)).lock();
   }
-  /// How many subscriptions, publishers and timers of the controller are alive: the topics of poses, and the timers.
+  /// Number of existing objects of the controller: the subscription of a topic, and the timers.
   template <typename Message>
   [[nodiscard]] std::size_t alive(const std::string& topic) {
     std::size_t count = subscription<Message>(topic) ? 1 : 0;
@@ -145,8 +146,8 @@ class Driven {
   std::int64_t calls = 0;
   long allocated = 0;
   double excess = -1e9;               ///< Excess over a bound on position or velocity [rad, rad/s].
-  double acceleration_excess = -1.0;  ///< As a share of the bound.
-  double jerk_excess = -1.0;          ///< As a share of the bound.
+  double acceleration_excess = -1.0;  ///< Relative to the bound.
+  double jerk_excess = -1.0;          ///< Relative to the bound.
 
  private:
   static void good(bool is_good, const char* what) {
@@ -154,7 +155,7 @@ class Driven {
   }
   std::map<std::string, std::any>& topics() { return controller_->get_node()->topics; }
 
-  /// The state that a transition leads to: an error that on_error() does not mend is final.
+  /// Sets the state after a transition. If on_error() does not succeed after an error, the state is final.
   bool change(CallbackReturn result, Lifecycle goal) {
     if (result == CallbackReturn::SUCCESS) state = goal;
     if (result == CallbackReturn::ERROR) {
@@ -165,8 +166,8 @@ class Driven {
     return result == CallbackReturn::SUCCESS;
   }
 
-  /// Calls the controller some seconds after its last call. A joint whose command stays because an interface was locked
-  /// has no tick: its commands before and after are neighbours.
+  /// Calls the controller `seconds` [s] after the last call. If a locked interface leaves the command of a joint
+  /// unchanged, the differences omit this call for this joint.
   void call(double seconds) {
     ++calls;
     const int refusals_before = refusals;

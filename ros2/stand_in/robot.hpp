@@ -36,7 +36,7 @@ class Robot : public Driven<7> {
   static constexpr double kRightAngle = 1.5707963267948966;
 
   [[nodiscard]] static std::vector<double> given(const fpbm::Vector<7>& bound) { return {bound.begin(), bound.end()}; }
-  /// The tool's x axis is the flange's y, its y the flange's z, its z the flange's x.
+  /// The x, y and z axes of the tool are the y, z and x axes of the flange.
   [[nodiscard]] static fpbm::Chain<> chain() {
     fpbm::Chain<> panda = fpbm::presets::panda();
     fpbm::Transform<> tool;

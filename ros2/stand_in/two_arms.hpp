@@ -31,14 +31,14 @@ class TwoArms : public Driven<14> {
     own.command_interfaces = {"position", "velocity"};
   }
 
-  /// The flange of an arm, "left" or "right", in the table's frame, for the commands.
+  /// Pose of the flange of an arm, "left" or "right", in the frame of the table, at the commanded positions.
   [[nodiscard]] fpbm::Transform<> tip(const std::string& side) const {
     fpbm::Kinematics<fpbm::Pose, 7> kinematics;
     const Joints& posture = std::isnan(command[0]) ? q : command;
     arm_.kinematics(fpbm::Vector<7>(posture.data() + (side == "left" ? 0 : 7)), kinematics);
     return base_of(side) * kinematics.tip;
   }
-  /// The left flange in the right one's frame.
+  /// Pose of the left flange in the frame of the right flange.
   [[nodiscard]] fpbm::Transform<> grasp() const { return inverse(tip("right")) * tip("left"); }
 
  private:

@@ -60,7 +60,7 @@ void moving() {
   check(robot.activate(), "velocities measured: activated at rest again", 1);
 }
 
-/// The command of another controller that is too far away, and readings that are not numbers.
+/// The command of another controller is too far from the arm; a reading is NaN; an interface is locked.
 void unusable() {
   Robot robot;
   check(robot.load(), "configured", 1);

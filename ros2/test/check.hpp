@@ -12,14 +12,14 @@ inline void check(bool good, const char* what, double value) {
   if (!good) ++failures;
 }
 
-/// Whether a line that was logged since the last call has a text.
+/// Whether the log since the last call contains a text.
 inline bool logged(const std::string& text) {
   const bool found = stand_in::log.find(text) != std::string::npos;
   stand_in::log.clear();
   return found;
 }
 
-/// At a time of a clock that is not the robot's.
+/// Message with a pose. stamp: [s], of a clock that differs from the clock of the robot.
 inline geometry_msgs::msg::PoseStamped pose_message(const fpbm::Transform<>& pose, double stamp) {
   geometry_msgs::msg::PoseStamped message;
   message.header = {rclcpp::Time(static_cast<std::int64_t>(1e9 * (1000.0 + stamp))), "base"};
@@ -27,7 +27,7 @@ inline geometry_msgs::msg::PoseStamped pose_message(const fpbm::Transform<>& pos
   return message;
 }
 
-/// The same without a stamp: of now.
+/// Message with a pose and without a stamp, which means the current time.
 inline geometry_msgs::msg::PoseStamped pose_message(const fpbm::Transform<>& pose) {
   geometry_msgs::msg::PoseStamped message = pose_message(pose, 0.0);
   message.header.stamp = {};

@@ -12,9 +12,9 @@ using controller_interface::CallbackReturn;
 using fpbm::presets::kAll;
 
 struct Given {
-  std::string arm;  ///< Preset.
+  std::string arm;  ///< Name of the preset.
   fpbm::Chain<> chain;
-  std::vector<std::string> joints;  ///< With a drive.
+  std::vector<std::string> joints;  ///< Actuated joints.
 };
 
 Given given(const std::string& arm) {
@@ -29,7 +29,7 @@ Given given(const std::string& arm) {
 
 class Controller {
  public:
-  /// With the parameters of a test, and the robot_description of a chain.
+  /// Sets the parameters of the controller, and the robot_description of the chain.
   explicit Controller(const Given& from) {
     auto& parameters = stand_in::parameters = {};
     parameters.arm = from.arm;
@@ -46,10 +46,10 @@ class Controller {
     return controller_->init(description, {}) == controller_interface::return_type::OK &&
            controller_->configure() == CallbackReturn::SUCCESS;
   }
-  /// Whether it is refused with a text.
+  /// Whether the controller rejects its configuration, with a message that contains `text`.
   [[nodiscard]] bool refuses(const std::string& text) { return !configure() && logged(text); }
 
-  /// The sum of the displacements of the joints in 0.3 s at a twist [rad]; -1 if it cannot be activated.
+  /// Sum of the displacements of all joints in 0.3 s after a twist [rad]; -1 if the activation fails.
   double way() {
     q.resize(stand_in::parameters.joints.size());
     const std::vector<double> start = q;
@@ -74,7 +74,7 @@ class Controller {
     for (std::size_t i = 0; i < q.size(); ++i) way += std::abs(q[i] - start[i]);
     return way;
   }
-  /// The tip that it publishes.
+  /// Tip pose that the controller publishes.
   fpbm::Transform<> tip() {
     using Pose = geometry_msgs::msg::PoseStamped;
     for (const auto& timer : controller_->get_node()->timers) {
@@ -92,7 +92,7 @@ class Controller {
   std::unique_ptr<controller_interface::ControllerInterface> controller_ = stand_in::exported_controller();
 };
 
-/// Every preset on its own description, with a joint too few, and on the description of every other arm.
+/// Every preset with the description of its arm, with a missing joint, and with the description of every other arm.
 void every_preset() {
   for (const auto& preset : kAll) {
     const Given own = given(preset.name);
@@ -183,7 +183,7 @@ void limits() {
   check(bounded.configure() && bounded.way() > 0.001, "no preset, limits.acceleration: configured", 1);
 }
 
-/// A pose has more rows than a Panda without its wrist has joints: the motion is damped at all times.
+/// The first five joints of a Panda. A pose has six rows: the motion is damped at all times.
 void too_few_joints() {
   Given shorter = given("panda");
   shorter.arm = "";
@@ -194,7 +194,7 @@ void too_few_joints() {
   check(controller.configure() && controller.way() > 0.001, "an arm of 5 joints: moves", 1);
 }
 
-/// A Panda whose last joint follows the one before.
+/// A Panda whose last joint follows the previous joint.
 void mimic() {
   Given geared = given("panda");
   geared.arm = "";

@@ -12,7 +12,7 @@ using fpbm::Transform;
 using geometry_msgs::msg::PoseStamped;
 using stand_in::Robot;
 
-/// Other threads lock the interfaces: for some ticks, then for good.
+/// Other threads lock the interfaces: for 3 ticks, then until the arm has stopped.
 void locked(Robot& robot) {
   const Transform<> start = robot.tip();
   Transform<> elsewhere = start;
@@ -97,7 +97,7 @@ void states(Robot& robot) {
   robot.tick(20000);
   check(robot.speed() < 1e-3, "unreachable target: speed at the end [rad/s]", robot.speed());
 
-  // A deactivated arm that moves: its velocity commands are zero immediately.
+  // If the arm moves at deactivation, the velocity commands become zero immediately.
   robot.hear("~/target_pose", pose_message(elsewhere, 60.0));
   robot.tick(300);
   const double moving = robot.speed();

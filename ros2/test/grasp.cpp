@@ -15,7 +15,8 @@ using fpbm::Transform;
 using geometry_msgs::msg::PoseStamped;
 using stand_in::TwoArms;
 
-/// Loads config/two_pandas.yaml: the left flange in the right one is the grasp, the right flange moves the tray.
+/// Loads config/two_pandas.yaml. The grasp is the pose of the left flange in the frame of the right flange. The right
+/// flange moves the tray.
 [[nodiscard]] bool load(TwoArms& robot) {
   stand_in::parameters.command_interfaces = {"position"};
   return robot.load(ParameterFile::read(CONFIG_FOLDER "/two_pandas.yaml", "tray"));
@@ -27,7 +28,7 @@ PoseStamped message_in(const std::string& frame, const Transform<>& pose) {
   return message;
 }
 
-/// The tray jumps from target to target; then the robot stops by a fault. The largest error of the grasp [m, rad].
+/// Largest error of the grasp [m, rad]. The target of the tray jumps; then a fault stops the robot.
 double largest_error(TwoArms& robot, int jumps, unsigned int seed) {
   const Transform<> start = robot.tip("right");
   const Transform<> grasp = robot.grasp();
@@ -79,7 +80,7 @@ void kept() {
   check(worst < 1e-6, "grasp: largest error while the tray jumps and stops [m, rad]", worst);
 }
 
-/// Without keep_first_level a stop opens the grasp: the test above would see it.
+/// Without keep_first_level, a stop changes the grasp. Therefore, kept() can detect a broken grasp.
 void not_kept() {
   TwoArms robot;
   stand_in::parameters.command_interfaces = {"position"};
@@ -90,7 +91,7 @@ void not_kept() {
   check(error > 1e-4, "grasp not kept: largest error [m, rad]", error);
 }
 
-/// The grasp's targets are in the frame of the right flange.
+/// Targets of the grasp are in the frame of the right flange.
 void targets_of_the_grasp() {
   TwoArms robot;
   check(load(robot) && robot.activate(), "grasp, own targets: activated", 1);

@@ -13,7 +13,7 @@ using fpbm::Transform;
 using stand_in::Lifecycle;
 using stand_in::Robot;
 
-/// Back and forth, so that all joints move.
+/// Sends target poses that move back and forth, so that all joints move.
 void swing(Robot& robot, const Transform<>& start, int i) {
   Transform<> pose = start;
   pose.p += fpbm::Vector<3>(0.05, 0.15, 0.1) * std::sin(4e-3 * i);

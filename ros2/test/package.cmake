@@ -1,5 +1,7 @@
-# Configures fpbm_controllers with packages that stand in for ROS's, among them an installed fpbm: the repository's headers
-# must come first. -DSOURCE=…/ros2/fpbm_controllers -DBUILD=a folder of its own
+# Configures fpbm_controllers with stand-ins for the packages of ROS and for an installed fpbm. The headers of the
+# repository must precede the installed headers.
+#   -DSOURCE=…/ros2/fpbm_controllers
+#   -DBUILD=folder that this script replaces
 file(REMOVE_RECURSE ${BUILD})
 set(packages ${BUILD}/packages)
 foreach(name IN ITEMS controller_interface fpbm hardware_interface pluginlib rclcpp rclcpp_lifecycle realtime_tools urdf)

@@ -11,7 +11,7 @@ namespace {
 using fpbm::Transform;
 using stand_in::Robot;
 
-/// A Panda whose target may be as fast as its joints.
+/// Sets parameters with which the target may be as fast as the joints.
 void fast() {
   auto& own = stand_in::parameters;
   own.scheme.k1 = 10.0;
@@ -21,7 +21,7 @@ void fast() {
   own.target.jerk = own.target.angular_jerk = 1e5;
 }
 
-/// A target that turns about the base, at first faster than joint 1 may.
+/// Sends a target that rotates about the base. At first, the target is faster than the velocity bound of joint 1.
 void turn(Robot& robot, const Transform<>& start, double t) {
   Transform<> turned;
   turned.R = fpbm::rotation(fpbm::Vector<3>(0.0, 0.0, 2.0 * std::sin(1.5 * t)));
@@ -48,7 +48,8 @@ void rate(unsigned int manager, int own, bool valid, const std::string& nearest)
   check(robot.excess > -0.01, (what + "velocity at a limit [rad/s]").c_str(), robot.excess);
 }
 
-/// Calls twice as often as the rate says, and a burst after a late call: the mean velocity of a joint in any 50 ms.
+/// Calls at twice the update rate, then bursts after late calls. In any 50 ms, the mean velocity of each joint is
+/// within its bound.
 void calls_too_soon() {
   Robot robot;
   fast();

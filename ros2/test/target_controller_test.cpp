@@ -1,5 +1,5 @@
-// Runs the controller on simulated arms, all tests or those that are named. Prints the measured values, and fails if
-// one is not as promised.
+// Tests the controller on simulated arms: all tests, or the tests in the arguments. Prints the measured values, and
+// fails if a value is not as promised.
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@ using geometry_msgs::msg::PoseStamped;
 using geometry_msgs::msg::TwistStamped;
 using stand_in::Robot;
 
-/// Where a hand leads the tip.
+/// Pose to which a person leads the tip at t [s].
 Transform<> hand(const Transform<>& start, double t) {
   const double way = std::pow(std::sin(1.5 * std::min(t, 2.0)), 2);
   Transform<> pose = start;
@@ -34,7 +34,7 @@ Transform<> hand(const Transform<>& start, double t) {
   return pose;
 }
 
-/// 30 a second, 10 ms early or late, none from 0.8 to 1.2 s.
+/// 30 poses per second, each up to 10 ms early or late. No poses from 0.8 to 1.2 s.
 void poses(Robot& robot) {
   const Transform<> start = robot.tip();
   std::mt19937 random(1);
@@ -60,7 +60,7 @@ void poses(Robot& robot) {
 void twists(Robot& robot) {
   const Transform<> start = robot.tip();
   TwistStamped message;
-  message.header.frame_id = "base";  // Without a stamp: of now.
+  message.header.frame_id = "base";  // No stamp: the current time.
   message.twist.linear.z = -0.05;
   for (int i = 0; i < 1000; ++i) {
     if (i % 50 == 0) robot.hear("~/target_twist", message);
@@ -72,7 +72,7 @@ void twists(Robot& robot) {
   check(robot.speed() < 1e-4, "twists: speed at the end [rad/s]", robot.speed());
 }
 
-/// Targets that must move nothing.
+/// Rejected targets do not move the arm.
 void refused(Robot& robot) {
   const Transform<> start = robot.tip();
   Transform<> elsewhere = start;
@@ -105,7 +105,7 @@ void refused(Robot& robot) {
 }
 
 void messages(Robot& robot) {
-  PoseStamped quarter;  // Turned by a right angle about z.
+  PoseStamped quarter;  // Rotated by a right angle about z.
   quarter.pose.orientation = {0.0, 0.0, std::sqrt(0.5), std::sqrt(0.5)};
   const fpbm::Vector<3> y = fpbm_controllers::target_of(quarter)->pose.R.col(0);
   check((y - fpbm::Vector<3>(0.0, 1.0, 0.0)).norm() < 1e-9, "messages: x, y, z, w of a quaternion", y(1));

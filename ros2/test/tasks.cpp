@@ -8,7 +8,7 @@ namespace {
 
 using stand_in::TwoArms;
 
-/// Two arms with a task "left" of the left flange.
+/// Parameters of two arms with a task "left" for the left flange.
 class Given {
  public:
   Given() {
@@ -23,7 +23,7 @@ class Given {
     task.level = level;
     return *this;
   }
-  /// All joints of both arms.
+  /// Adds the joints of the right arm.
   Given& both() {
     for (int i = 1; i < 8; ++i) own.joints.push_back("right_panda_joint" + std::to_string(i));
     return *this;

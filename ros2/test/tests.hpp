@@ -2,24 +2,24 @@
 
 #include <robot.hpp>
 
-/// Targets that come unevenly, none, and wrong ones; then locks of all interfaces, a held arm, activations.
+/// Irregular streams of targets with a gap, and invalid targets. Then locks of all interfaces, a held arm, activations.
 void targets();
 void faults(stand_in::Robot& robot);
 /// Locks interfaces one by one, in motion and at deactivation.
 void locks();
-/// Update rates, asynchronous updates, and calls that come too soon.
+/// Update rates, asynchronous updates, and calls before the next period of the controller.
 void rates();
-/// Starts of an arm that has an offset, lags behind, moves, or cannot be read.
+/// Activations of an arm with an offset, with a lag, in motion, and with invalid readings.
 void activation();
-/// Arms and limits of robot_description, with every preset, with presets of other arms, and with a mimic joint.
+/// Arms and limits from robot_description, with every preset, with presets of other arms, and with a mimic joint.
 void descriptions();
-/// Subscriptions, stamps, and the node's life.
+/// Subscriptions, stamps, and the lifecycle of the node.
 void topics();
-/// Values of other types, misspelt names, numbers that are not finite.
+/// Parameters with values of other types, misspelt names, and numbers that are not finite.
 void parameters();
-/// Two arms side by side, each with a task: poses, twists, wrong messages, activations, a fault.
+/// Two arms side by side, each with a task: poses, twists, invalid messages, activations, and a fault.
 void two_arms();
-/// Two arms with config/two_pandas.yaml: a grasp that a tray's motion and stop leave alone.
+/// Two arms with config/two_pandas.yaml: motions and a stop of the tray do not change the grasp.
 void grasp();
-/// Tasks that are refused.
+/// Tasks that the controller accepts or rejects.
 void tasks();

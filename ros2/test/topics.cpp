@@ -27,7 +27,8 @@ void quality_of_service() {
         distance(robot.tip(), elsewhere));
 }
 
-/// A stamp of the past is rejected with a warning; a first stamp of the future blocks nothing after a silence.
+/// A stamp from the past is rejected with a warning. If the first stamp is from the future, targets after a pause are
+/// accepted.
 void stamps() {
   Robot robot;
   check(robot.load() && robot.activate(), "stamps: activated", 1);
@@ -59,7 +60,7 @@ void life() {
   robot.deactivate();
   check(robot.cleanup(), "cleanup", 1);
   stand_in::parameters.base_frame = "base_link";
-  late->hear(pose_message(robot.tip()));  // A callback that ran while the topics closed.
+  late->hear(pose_message(robot.tip()));  // A callback during the cleanup.
   const long held = robot.alive<PoseStamped>("~/target_pose") ? late.use_count() : 1;
   check(held == 1, "cleanup: holders of a subscription that is in use", static_cast<double>(held));
   check(robot.configure() && robot.activate(), "configured and activated again", 1);

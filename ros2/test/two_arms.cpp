@@ -18,7 +18,7 @@ using geometry_msgs::msg::PoseStamped;
 using geometry_msgs::msg::TwistStamped;
 using stand_in::TwoArms;
 
-/// Two hands side by side.
+/// Sets parameters with a task for each flange.
 void give_hands() {
   auto& own = stand_in::parameters;
   own.tasks = {"left", "right"};
@@ -46,7 +46,7 @@ void within_limits(const TwoArms& robot, const std::string& what) {
   check(robot.allocated == 0, (what + ": allocations").c_str(), static_cast<double>(robot.allocated));
 }
 
-/// The value of a key in the diagnostics; empty where there is none.
+/// Value of a key in the diagnostics; empty if the key is missing.
 std::string value_of(TwoArms& robot, const std::string& key) {
   const auto status = robot.said<DiagnosticArray>("/diagnostics").last.status.at(0);
   for (const auto& each : status.values) {
@@ -55,7 +55,7 @@ std::string value_of(TwoArms& robot, const std::string& key) {
   return "";
 }
 
-/// A message moves the arm of its task alone.
+/// A message moves only the arm of its task.
 void one_hand(TwoArms& robot) {
   const auto before = robot.command;
   Transform<> left = robot.tip("left");
@@ -68,7 +68,7 @@ void one_hand(TwoArms& robot) {
   check(still < 1e-9, "left hand alone: motion of the right arm [rad]", still);
 }
 
-/// Where hand k is led: 20 times a second.
+/// Target pose of a flange at t [s]. side: 1 for left, -1 for right.
 Transform<> led(const Transform<>& start, double side, double t) {
   Transform<> pose = start;
   const double share = std::pow(std::sin(1.5 * std::min(t, 2.0)), 2);
@@ -109,7 +109,7 @@ void both_hands(TwoArms& robot) {
 
 /// Each task has its own frame, stamps and counts.
 void refused(TwoArms& robot) {
-  robot.tick(5000);  // All is at rest.
+  robot.tick(5000);  // Both arms come to rest.
   Transform<> elsewhere = robot.tip("right");
   elsewhere.p(2) += 0.1;
   const auto before = robot.command;
@@ -137,7 +137,7 @@ void refused(TwoArms& robot) {
   check(value_of(robot, "left: scale") == "1.000000", "diagnostics: scale of a task", 1);
 }
 
-/// The arms start from their last commands.
+/// After another activation, the arms start from their last commands.
 void again() {
   TwoArms robot;
   give_hands();
@@ -159,7 +159,7 @@ void again() {
   within_limits(robot, "two arms, again");
 }
 
-/// A joint that cannot be read stops both arms.
+/// If the reading of a joint is NaN, both arms stop.
 void fault() {
   TwoArms robot;
   give_hands();

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-/// The parameters of a node in a parameter file, as ROS has them. Of YAML it knows maps by indentation, lists in
-/// brackets, numbers, booleans and words.
+/// Parameters of a node from a ROS parameter file. Supported YAML: maps by indentation, lists in brackets, numbers,
+/// booleans and words.
 class ParameterFile {
  public:
   static std::map<std::string, rclcpp::ParameterValue> read(const std::string& file, const std::string& node) {

@@ -14,9 +14,9 @@
 #include <utility>
 #include <vector>
 
-// Stands in for ros2_control's header of this name and for the headers that it includes: only the interface that the
-// controller uses, with interfaces that are plain numbers. Signatures are those of ros2_control 4.46 (Jazzy) and 6.8
-// (Rolling).
+// Stands in for ros2_control's header of this name and for the headers that it includes: only the members that the
+// controller uses. Command and state interfaces are references to numbers. Signatures are those of ros2_control 4.46
+// (Jazzy) and 6.8 (Rolling).
 namespace rclcpp_lifecycle {
 
 class State {};
@@ -65,7 +65,7 @@ class LifecycleNode {
     return parameters_->get_parameter(name);
   }
 
-  std::map<std::string, std::any> topics;  ///< Weak, like the references of the node.
+  std::map<std::string, std::any> topics;  ///< Weak pointers, like the references in a node of ROS.
   std::vector<std::weak_ptr<rclcpp::TimerBase>> timers;
 
  private:
@@ -79,9 +79,9 @@ class LifecycleNode {
 namespace stand_in {
 
 inline bool locked = false;  ///< Whether another thread has locked every interface.
-inline int refusals = 0;     ///< How many commands were not taken.
+inline int refusals = 0;     ///< Number of commands to locked interfaces.
 
-/// One interface: how many more calls find it locked by another thread.
+/// Lock of an interface by another thread. calls: number of further calls that fail.
 struct Lock {
   int calls = 0;
   [[nodiscard]] bool refuses() { return locked || (calls > 0 && calls-- > 0); }
@@ -132,7 +132,7 @@ struct InterfaceConfiguration {
   std::vector<std::string> names = {};
 };
 
-/// With the defaults of rclcpp_lifecycle.
+/// The callbacks have the defaults of rclcpp_lifecycle.
 class ControllerInterface {
  public:
   virtual ~ControllerInterface() = default;
@@ -159,7 +159,8 @@ class ControllerInterface {
     parameters->declare_parameter("use_sim_time", rclcpp::ParameterValue(false));
     return on_init() == CallbackReturn::SUCCESS ? return_type::OK : return_type::ERROR;
   }
-  /// A rate that does not divide the manager's becomes a whole number of hertz near a rate that does.
+  /// If the update rate does not divide the rate of the manager, the update rate becomes a whole number of hertz near a
+  /// rate that divides the rate of the manager.
   CallbackReturn configure() {
     const std::int64_t own = node_->get_parameter("update_rate").as_int();
     const std::int64_t manager = params_.controller_manager_update_rate;
@@ -202,7 +203,7 @@ class ControllerInterface {
 
 namespace stand_in {
 
-/// The controller that PLUGINLIB_EXPORT_CLASS has named.
+/// A controller of the class in PLUGINLIB_EXPORT_CLASS.
 std::unique_ptr<controller_interface::ControllerInterface> exported_controller();
 
 }  // namespace stand_in

@@ -4,7 +4,8 @@
 #include <string>
 #include <unordered_map>
 
-// Stands in for ros2_control's header of this name, which has come with get_hard_joint_limits().
+// Stands in for ros2_control's header of this name. Versions of ros2_control with get_hard_joint_limits() have this
+// header.
 namespace controller_interface {
 
 struct ControllerInterfaceParams {

@@ -10,8 +10,8 @@
 #include <type_traits>
 #include <vector>
 
-// Stands in for the header that generate_parameter_library makes of target_controller_parameters.yaml. The test sets
-// the values of a parameter file, or overrides some with values of other types.
+// Stands in for the header that generate_parameter_library generates from target_controller_parameters.yaml. The test
+// sets the values as a parameter file does, or overrides some values, possibly with other types.
 namespace target_controller {
 
 struct Params {
@@ -73,8 +73,8 @@ namespace stand_in {
 
 inline target_controller::Params parameters;
 
-/// Calls visit(name, value, whether a value is valid) for every parameter. As in generate_parameter_library, a number
-/// that is NaN passes all but gt and gt_eq.
+/// Calls visit(name, value, is_valid) for every parameter, where is_valid is the validator of values. As in
+/// generate_parameter_library, NaN passes all validators except gt and gt_eq.
 template <typename Visit>
 void for_each_parameter(target_controller::Params& p, Visit&& visit) {
   using Numbers = std::vector<double>;

@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-// Stands in for rclcpp's header of this name: only the interface that the controller uses. Messages are received only
-// by the test.
+// Stands in for rclcpp's header of this name: only the members that the controller uses. Only the test sends and
+// receives messages, by Subscription::hear() and Publisher::last.
 namespace rclcpp {
 
 class Logger {};
@@ -52,7 +52,8 @@ class Subscription {
  public:
   Subscription(const QoS& qos, std::function<void(const Message&)> callback)
       : qos_(qos), callback_(std::move(callback)) {}
-  /// A message of a publisher: none arrives if the subscription requires more than the publisher offers.
+  /// Delivers a message from a publisher with the QoS `offered`. If the subscription is reliable and the publisher is
+  /// not, the message is lost.
   void hear(const Message& message, const QoS& offered = SystemDefaultsQoS()) const {
     const bool wants_more =
         qos_.reliability() == ReliabilityPolicy::Reliable && offered.reliability() == ReliabilityPolicy::BestEffort;
@@ -91,7 +92,7 @@ class TimerBase {
 namespace stand_in {
 
 inline int warnings = 0;
-inline std::string log;  ///< All that was logged, a line each.
+inline std::string log;  ///< All log messages, one per line.
 
 [[gnu::format(printf, 2, 3)]] inline void write(const char* level, const char* format, ...) {
   std::va_list values;

@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-// Stands in for the headers of urdf and urdfdom: the model that is read from a robot_description. Nothing is parsed:
-// the test registers a model, and the text of its robot_description is the model's name.
+// Stands in for the headers of urdf and urdfdom: the model of a robot_description. Nothing is parsed: the test
+// registers a model under a name, and this name is the text of robot_description.
 namespace urdf {
 
 struct Vector3 {

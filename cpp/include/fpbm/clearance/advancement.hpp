@@ -36,7 +36,7 @@ class Advancement {
 
   /// Whether all pairs are proved to keep their margin along the trajectory `stop` from the posture of the near pairs.
   /// A pair that is closer than its margin at the start, because an obstacle has moved, must not come closer.
-  /// time: duration of the trajectory, during which moving obstacles continue [s].
+  /// time: duration of the trajectory, during which moving obstacles continue to move [s].
   template <int N>
   [[nodiscard]] bool keeps_margins(const Clearance& clearance, NearPairs<Clearance>& near,
                                    const StopDisplacement<N, Scalar>& stop, Scalar time,
@@ -101,8 +101,9 @@ class Advancement {
   /// A pair that is proved for this fraction of the remaining trajectory is not checked in the next step
   /// (bench/README.md, "The longest ticks").
   static constexpr Scalar kProven = Scalar(0.75);
-  /// Distance within the margin that is round-off error [m]: in double 4.5e6 ε, and in float 84 ε, for distances of 1
-  /// m. In double, Guard.moves_away_from_a_shape_that_jumped passes with 0 to 1e-6, and fails with 1e-3.
+  /// A distance that is smaller than the margin by at most this value [m] is treated as round-off error: in double
+  /// 4.5e6 ε, and in float 84 ε, for distances of 1 m. In double, Guard.moves_away_from_a_shape_that_jumped passes with
+  /// 0 to 1e-6, and fails with 1e-3.
   static constexpr Scalar kIntrusion = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-9) : Scalar(1e-5);
 
   struct Motion {
@@ -119,8 +120,8 @@ class Advancement {
   };
 
   /// Fraction of the trajectory, at most the fraction `remaining`, in which the pair is proved to keep its margin: the
-  /// smallest root of the lower bounds on its gaps (docs/clearance.md, "Proof"). Not positive if there is none.
-  /// obstacle: displacement bound of the second shape if it is a moving obstacle [m].
+  /// smallest root of the lower bounds on its gaps (docs/clearance.md, "Proof"). If no fraction is proved, the result
+  /// is not positive. obstacle: displacement bound of the second shape if it is a moving obstacle [m].
   [[nodiscard]] static Scalar proved_fraction(const Clearance& clearance, const Placement& placed,
                                               const ShapePair& pair, const Nearest<Scalar>& nearest,
                                               const Motion& motion, const DisplacementBound<Scalar>& bound,

@@ -19,7 +19,8 @@ struct Body {
   Vector<Joints, Scalar> levers;  ///< Larger lever of both ends, for each joint (levers.hpp).
   Scalar size;                    ///< Radius of the smallest ball around the capsule [m].
   bool is_direction = false;
-  Scalar deceleration = std::numeric_limits<Scalar>::infinity();  ///< Largest, toward a task bound [m/s²] or [1/s²].
+  /// Largest deceleration toward a task bound [m/s²], or [1/s²] of a direction.
+  Scalar deceleration = std::numeric_limits<Scalar>::infinity();
 
   /// capsule: in the frame of the link. in_joint: pose of this frame in the frame of the joint of the link.
   Body(const Levers<Scalar>& levers_of, int link_, const Transform<Scalar>& in_joint, const Capsule<Scalar>& capsule,

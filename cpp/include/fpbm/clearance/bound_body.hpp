@@ -7,8 +7,8 @@
 
 namespace fpbm {
 
-/// A point of the link of a frame as the body of a bound on a task. point: in the frame of the link; if the frame is at
-/// the tip, in the frame of the tip [m]. Throws std::invalid_argument if the link does not exist.
+/// A point of the link of a frame as the body of a bound on a task. point: in the frame of the link [m]. If the frame
+/// is at the tip, point is in the frame of the tip. Throws std::invalid_argument if the link does not exist.
 template <int N, typename Scalar, int Joints>
 [[nodiscard]] Body<Scalar, Joints> bound_body(const Clearance<N, Scalar, Joints>& clearance,
                                               const LinkFrame<Scalar>& frame, const Vector<3, Scalar>& point,

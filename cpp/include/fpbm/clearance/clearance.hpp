@@ -18,7 +18,7 @@
 namespace fpbm {
 
 /// The shapes of a robot and its environment, and the pairs of shapes that must keep a margin: docs/clearance.md.
-/// Obstacles may move; everything else is constant after construction. Joints: number of joints if it is not N,
+/// Obstacles may move. All other data are constant after construction. Joints: number of all joints, N by default;
 /// Eigen::Dynamic for a robot with joints that follow others.
 template <int N, typename Scalar_ = double, int Joints = N>
 class Clearance {
@@ -41,7 +41,7 @@ class Clearance {
   };
 
   /// source: the Tree or the Chain of the robot. margin: smallest distance of a pair [m]. allowed: names of pairs that
-  /// are not checked. A link and its parent link are not checked either. Throws std::invalid_argument if a number is
+  /// are not checked. Pairs of a link and its parent link are not checked. Throws std::invalid_argument if a number is
   /// out of range, a link does not exist, or a prismatic joint without bounds is between a revolute joint and a
   /// capsule.
   template <typename Source>
@@ -88,14 +88,14 @@ class Clearance {
     return {bodies_[pair.first].name, pair.world ? obstacles_[pair.second].name : bodies_[pair.second].name};
   }
 
-  /// Number of pairs of shapes. The pairs after these are bounds of tasks.
+  /// Number of pairs of shapes. In pairs(), the bounds of tasks follow the pairs of shapes.
   [[nodiscard]] std::size_t shape_pairs() const noexcept { return shape_pairs_; }
 
-  /// Excluded pairs: they overlap in all of many postures, so no motion could keep their margin.
+  /// Pairs that are not checked, because they are closer than the margin in all of many sampled postures.
   [[nodiscard]] const std::vector<ShapePair>& excluded_pairs() const noexcept { return excluded_pairs_; }
 
-  /// Moves obstacle i, which is then expected to continue with the velocity [m/s]. Returns false without effect if
-  /// obstacle i does not exist or has another type of shape.
+  /// Moves obstacle i. velocity: expected velocity of the obstacle after the call [m/s]. Returns false without effect
+  /// if obstacle i does not exist or has another type of shape.
   bool move(std::size_t i, const WorldShape<Scalar>& shape, const Vector3& velocity) noexcept {
     if (i >= obstacles_.size() || obstacles_[i].shape.index() != shape.index()) return false;
     obstacles_[i].shape = shape;
@@ -112,8 +112,7 @@ class Clearance {
   }
   [[nodiscard]] const Away<Scalar>& away() const noexcept { return away_; }
 
-  /// Adds bounds of a task: PositionBounds or AxisBounds. Throws std::invalid_argument under the conditions of their
-  /// add_to().
+  /// Adds bounds of a task: PositionBounds or AxisBounds. Throws the errors of Bounds::add_to().
   template <typename Bounds>
   void keep(const Bounds& bounds) {
     bounds.add_to(*this);

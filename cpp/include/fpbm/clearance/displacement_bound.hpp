@@ -10,7 +10,8 @@
 namespace fpbm {
 
 /// Bounds on the displacement of a point of a body, after the fraction t of a stopping trajectory [m]
-/// (docs/clearance.md, "Proof"):
+/// (docs/clearance.md, "Proof"). The displacement of the joints is t·p + r with |r| ≤ e, where p is
+/// JointDisplacement::line, and e is JointDisplacement::deviation. The bounds on the point are
 ///
 ///   displacement:                                        at most d₀ + d₁t
 ///   deviation from the linear displacement J(t·p + r):   at most c₀ + c₁t + c₂t²
@@ -19,8 +20,8 @@ namespace fpbm {
 ///
 ///   d₀ + d₁t = Σ_k r_k x_k,        c₀ + c₁t + c₂t² = Σ_k r_k x_k (x_k/2 + Σ_{j<k} x_j),
 ///
-/// where the factor in brackets contains revolute joints only. This is the second-order term: if joint j rotates by α,
-/// and joint k later in the chain by β, a point deviates by at most r_k αβ.
+/// where the factor in brackets contains revolute joints only. The second sum is the second-order term: if joint j
+/// rotates by α, and joint k later in the chain by β, a point deviates by at most r_k αβ.
 template <typename Scalar>
 struct DisplacementBound {
   Scalar d0 = Scalar(0);
@@ -31,7 +32,7 @@ struct DisplacementBound {
 
   [[nodiscard]] Scalar displacement(Scalar t) const noexcept { return d0 + t * d1; }
 
-  /// Adds the terms of `joints` to the bounds: the joints that move the body.
+  /// Adds the terms of `joints`, the joints that move the body, to the bounds.
   template <typename Clearance>
   void add(const Clearance& clearance, const typename Clearance::Body& body, JointBits joints,
            const JointDisplacement<Clearance>& displacement) noexcept {

@@ -7,23 +7,26 @@
 
 namespace fpbm {
 
-/// Nearest points of two shapes. If several pairs of points are nearest, or several directions separate overlapping
-/// shapes equally, the result is one of them. Never NaN for shapes whose lengths have finite squares.
+/// Nearest points of two shapes. If several pairs of points are nearest, the result is one of these pairs. If several
+/// directions separate overlapping shapes equally, the result has one of these directions. Never NaN for shapes whose
+/// lengths have finite squares.
 template <typename Scalar = double>
 struct Nearest {
-  Scalar distance;              ///< Signed [m]. Negative: the smallest displacement that separates them.
-  Vector<3, Scalar> normal;     ///< Unit vector from second to first: moving first along it by x adds x to distance.
-  Vector<3, Scalar> on_first;   ///< On the surface of first; on_first = on_second + distance · normal.
-  Vector<3, Scalar> on_second;  ///< On the surface of second.
+  Scalar distance;              ///< Signed [m]. Negative: minus the smallest displacement that separates the shapes.
+  Vector<3, Scalar> normal;     ///< Unit vector from the second shape to the first. A displacement x of the first shape
+                                ///< along the normal adds x to the distance.
+  Vector<3, Scalar> on_first;   ///< On the surface of the first shape: on_second + distance · normal.
+  Vector<3, Scalar> on_second;  ///< On the surface of the second shape.
 
-  /// For a capsule whose core has this distance from second. point: the nearest point of the core.
+  /// Nearest points if the first shape is a capsule. distance: from the core of the capsule to the second shape. point:
+  /// the nearest point of the core.
   [[nodiscard]] static Nearest of_core(Scalar distance, const Vector<3, Scalar>& normal, const Vector<3, Scalar>& point,
                                        Scalar radius) noexcept {
     return {distance - radius, normal, point - radius * normal, point - distance * normal};
   }
 };
 
-/// Separation of two capsules.
+/// Nearest points of two capsules.
 template <typename Scalar>
 [[nodiscard]] Nearest<Scalar> nearest(const Capsule<Scalar>& first, const Capsule<Scalar>& second) noexcept {
   const Segment<Scalar> core = first.core();
@@ -31,7 +34,7 @@ template <typename Scalar>
   return Nearest<Scalar>::of_core(cores.gap - second.radius, cores.normal, core.at(cores.s), first.radius);
 }
 
-/// Separation of a capsule and a half-space: at the deeper end of the capsule.
+/// Nearest points of a capsule and a half-space, at the deeper end of the capsule.
 template <typename Scalar>
 [[nodiscard]] Nearest<Scalar> nearest(const Capsule<Scalar>& first, const HalfSpace<Scalar>& second) noexcept {
   const Scalar at_a = second.normal.dot(first.a);
@@ -41,7 +44,7 @@ template <typename Scalar>
   return Nearest<Scalar>::of_core(distance, second.normal, b_deeper ? first.b : first.a, first.radius);
 }
 
-/// Separation of a capsule and a box.
+/// Nearest points of a capsule and a box.
 template <typename Scalar>
 [[nodiscard]] Nearest<Scalar> nearest(const Capsule<Scalar>& first, const Cuboid<Scalar>& second) noexcept {
   const Segment<Scalar> core = first.core();

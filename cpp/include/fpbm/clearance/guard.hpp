@@ -13,10 +13,11 @@ namespace fpbm {
 
 /// Keeps the margin of all pairs of a clearance, tick by tick: docs/clearance.md.
 ///
-/// A tick is executed only if the arm can stop from its end, and all pairs keep their margin until the arm is at rest
+/// A tick is executed only if the arm can stop after the tick, and all pairs keep their margin until the arm is at rest
 /// (Advancement). Otherwise the arm continues the stopping trajectory of the previous tick. By induction from the
 /// start, no pair of static shapes comes closer than its margin. The bounds of rows() on the next motion leave slack
-/// for this check, so that the arm slides along a surface instead of stopping before it. Joints: as in Clearance.
+/// for the check by Advancement, so that the arm slides along a surface instead of stopping before it. Joints: as in
+/// Clearance.
 template <Level kLevel, int N, typename Scalar = double, int Joints = N>
 class Guard {
  public:
@@ -63,7 +64,8 @@ class Guard {
 
   /// Whether there are no pairs.
   [[nodiscard]] bool empty() const noexcept { return clearance_.pairs().empty(); }
-  /// To move obstacles, or to set away(). Bounds that are added after the construction of the guard have no effect.
+  /// Use this reference for Clearance::move() and Clearance::keep_away(). Bounds that are added after the construction
+  /// of the guard have no effect.
   [[nodiscard]] Clearance& clearance() noexcept { return clearance_; }
   [[nodiscard]] const Clearance& clearance() const noexcept { return clearance_; }
 
@@ -100,9 +102,9 @@ class Guard {
   /// Null-space motion away from shapes, at the state of rows().
   [[nodiscard]] JointVector away() const noexcept { return motion_away(clearance_, near_pairs_.here()); }
 
-  /// Whether the arm may move in a tick from the state of rows() to the state `to`. If so, the stopping trajectory from
-  /// `to` becomes the plan. If the proof fails only for pairs with moving obstacles, the tick is accepted, because the
-  /// rows bound the motion toward these obstacles.
+  /// Whether the arm may move in a tick from the state of rows() to the state `to`. If the result is true, the stopping
+  /// trajectory from `to` becomes the plan. If the proof fails only for pairs with moving obstacles, the tick is
+  /// accepted, because the rows bound the motion toward these obstacles.
   [[nodiscard]] bool accepts(const JointLimits& limits, const JointState& from, const JointState& to) noexcept {
     const StopPlan<kLevel, N, Scalar> plan(limits, to, (to.qd - from.qd) / limits.tick());
     const StopDisplacement<N, Scalar> displacement = plan.displacement(limits, from, to);
@@ -132,7 +134,7 @@ class Guard {
   PairRows<kLevel, Clearance, N> pair_rows_;
   typename Clearance::Placement placed_;  ///< Memory of bound_speeds().
   StopPlan<kLevel, N, Scalar> plan_;
-  StopDisplacement<N, Scalar> displacement_;  ///< Of the tick that leads to the plan, and of the plan.
+  StopDisplacement<N, Scalar> displacement_;  ///< Displacement in the tick before the plan, and in the plan.
   Scalar acting_ticks_ = Scalar(1);           ///< StopPlan::acting_ticks().
   Eigen::Index pair_count_ = 0;               ///< Number of rows for pairs.
 };

@@ -30,8 +30,8 @@ struct ShapePair {
   std::size_t second;
   bool world;
   JointBits by_first;   ///< Joints that move the first shape only.
-  JointBits by_second;  ///< Joints that move the second shape only. None in a chain, because the second link is
-                        ///< earlier.
+  JointBits by_second;  ///< Joints that move the second shape only. Empty for a chain, in which
+                        ///< the second link is nearer to the base.
 };
 
 /// Calls f(k) for each joint whose bit is set, from the base to the tip.

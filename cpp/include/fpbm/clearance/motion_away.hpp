@@ -6,10 +6,13 @@
 
 namespace fpbm {
 
-/// Joint motion gain Σ (1 − s/range)² ∇s, over all pairs with a gap s < range beyond the margin [rad/s², or rad/s at
-/// velocity level]. This is the negative gradient of the potential gain·range/3 Σ (1 − s/range)³. The sum contains both
-/// ends of a capsule, so that the motion is continuous if the nearest points jump from one end to the other. placed:
-/// the bodies of the clearance.
+/// Null-space motion away from shapes [rad/s², or rad/s at velocity level]:
+///
+///   Σ gain (1 − s/range)² ∇s   over all pairs with a gap s < range beyond the margin.
+///
+/// This is the negative gradient of the potential gain·range/3 Σ (1 − s/range)³. The sum contains both ends of a
+/// capsule, so that the motion is continuous if the nearest points jump from one end to the other. placed: the bodies
+/// of the clearance.
 template <typename Clearance>
 [[nodiscard]] typename Clearance::JointVector motion_away(const Clearance& clearance,
                                                           const typename Clearance::Placement& placed) noexcept {

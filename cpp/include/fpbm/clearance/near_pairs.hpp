@@ -41,8 +41,9 @@ class NearPairs {
   /// Computes the bodies in a posture, which need not be near the previous posture.
   void set_posture(const Clearance& clearance, const JointVector& q) noexcept {
     set_displacements(clearance, clearance.robot().drives().rates(JointVector(q - here_.state.q)).cwiseAbs());
-    // The sum over n joints has an error of at most (n/2) ε of itself, and each addition of ε/2: 4 ε for 7 joints.
-    // NearPairs.are_those_of_the_distances_in_float compares the near pairs with the pairs found by distances alone.
+    // The sum over n joints has a relative error of at most (n/2) ε, and each addition a relative error of ε/2: 4 ε for
+    // 7 joints. NearPairs.are_those_of_the_distances_in_float compares the near pairs with the pairs found by distances
+    // alone.
     constexpr Scalar kRoundOff = Scalar(4) * std::numeric_limits<Scalar>::epsilon();
     for (std::size_t i = 0; i < lower_bound_.size(); ++i) {
       const ShapePair& pair = clearance.pairs()[i];
@@ -57,8 +58,8 @@ class NearPairs {
     clearance.place(q, here_);
   }
 
-  /// Sets the displacement bounds: for bodies, if joint k moves by at most most(k) [rad or m]; for obstacles, if they
-  /// move with their velocities for a time [s].
+  /// Sets the displacement bounds of bodies and obstacles. Joint k moves by at most most(k) [rad or m]. Obstacles move
+  /// with their velocities for `time` [s].
   void set_displacements(const Clearance& clearance, const AllJoints& most, Scalar time = Scalar(0)) noexcept {
     Scalar by_joints(0);
     for (std::size_t i = 0; i < displacement_.size(); ++i) {

@@ -96,20 +96,23 @@ class PairRows {
   // `fpbm_tests --gtest_filter='Guard.slides*:Guard.returns*:Guard.moves*'` passes with the ranges below, and prints
   // the error along a wall and the jerk.
 
-  /// Distance that the rows keep beyond the margin, so that an arm at rest can move along a surface. It is larger than
-  /// the second-order displacement of a tick from rest [m]: at most 49 (A h²)² = 1.1e-8 m for seven joints with levers
-  /// of 1 m, A = 15 rad/s² and h = 1 ms. Range: 0 to 1e-4.
+  /// Distance that the rows keep beyond the margin [m], so that an arm at rest can move along a surface. The
+  /// second-order displacement of a tick from rest is smaller: at most 49 (A h²)² = 1.1e-8 m for seven joints with
+  /// levers of 1 m, A = 15 rad/s² and h = 1 ms. Range: 0 to 1e-4.
   static constexpr Scalar kReserve = Scalar(1e-6);
-  /// Part of T beyond the stopping time [s]. Range: 0.025 to 0.2. With 0.0125 and with 1,
-  /// Guard.returns_when_a_shape_leaves fails. With 0.2, T/κ exceeds τ, and TaskBounds.stop_gently_before_a_wall fails.
+  /// Part of T beyond the coasting time [s]. Range: 0.025 to 0.2. With 0.0125 and with 1,
+  /// Guard.returns_when_a_shape_leaves fails. With 0.2, T/κ exceeds τ: the tests above pass, but
+  /// TaskBounds.stop_gently_before_a_wall fails.
   static constexpr Scalar kSoft = Scalar(0.05);
-  /// τ [s], larger than the usual T/κ. TaskBounds.stop_gently_before_a_wall prints the deceleration before a wall. The
-  /// test passes with 0.2 and 0.4. With 0.1, the deceleration is twice its bound; with 1, the arm is too slow.
+  /// τ [s] of closing_speed(), larger than the usual T/κ. TaskBounds.stop_gently_before_a_wall prints the deceleration
+  /// before a wall. The test passes with 0.2 and 0.4. With 0.1, the deceleration is twice its bound; with 1, the arm is
+  /// too slow.
   static constexpr Scalar kTail = Scalar(0.2);
-  /// κ. Range: 0.4 to 1. With 0.2, the error is 2.2 mm, not 0.2 mm. With 0.4, T/κ exceeds τ, as for kSoft.
+  /// κ. Range: 0.4 to 1. With 0.2, the error along a wall is 2.2 mm, not 0.2 mm. With 0.4, T/κ exceeds τ, as with
+  /// kSoft = 0.2.
   static constexpr Scalar kClosing = Scalar(0.8);
-  /// Steps of the advancement, for the deviation bound of one step. Range: 2 to 16. With 1, the jerk is 1.7 times
-  /// larger.
+  /// The rows use the deviation bound after the fraction t = 1/kSteps of the stop, as for one of kSteps equal steps of
+  /// Advancement. Range: 2 to 16. With 1, the jerk is 1.7 times larger.
   static constexpr Scalar kSteps = Scalar(4);
 
   /// The stop, and the motion from which it starts.
@@ -177,8 +180,8 @@ class PairRows {
 
   /// Largest permitted closing speed −ṡ of a pair [m/s].
   ///
-  /// A body with the deceleration a brakes along v²/(2a) + v h = s − s₀/2, where s is the gap. For s ≤ s₀ = a τ², the
-  /// speed is v = s/τ, which decelerates by less than a.
+  /// A body with the deceleration a brakes along v²/(2a) + v h = s − s₀/2, where s is the gap beyond the margin, and
+  /// s₀ = a τ². For s ≤ s₀, the speed is v = s/τ, and the deceleration is less than a.
   [[nodiscard]] static Scalar closing_speed(const Clearance& clearance, const Candidate& row, Scalar gap_slack,
                                             const Motion& motion) noexcept {
     const Scalar shortest_stop =
@@ -191,7 +194,8 @@ class PairRows {
     return std::min(shortest_stop, std::sqrt(a * (a * h * h + Scalar(2) * row.gap - last)) - a * h);
   }
 
-  /// Whether a pair is a bound with its own deceleration, which may need more distance than the shortest stop.
+  /// Whether a pair is a bound of a task with a largest deceleration. The stop at this deceleration may need more
+  /// distance than the shortest stop.
   [[nodiscard]] static bool has_deceleration(const Clearance& clearance, const ShapePair& pair) noexcept {
     return &pair >= clearance.pairs().data() + clearance.shape_pairs() &&
            std::isfinite(clearance.bodies()[pair.first].deceleration);
@@ -229,8 +233,8 @@ class PairRows {
     return decrease;
   }
 
-  /// Index for a row with this slack: the next index if there is one, otherwise the index of the row with the largest
-  /// slack, or kPairs if no row has more slack.
+  /// Index for a row with this slack. If fewer than kPairs rows are stored, the next index. Otherwise, the index of the
+  /// row with the largest slack, or kPairs if no row has more slack.
   [[nodiscard]] Eigen::Index index_for(Scalar slack, Eigen::Index& count) const noexcept {
     if (count < kPairs) return count++;
     const Candidate* most = std::max_element(candidates_, candidates_ + kPairs,

@@ -17,8 +17,8 @@ struct Placement {
   std::vector<Capsule<Scalar>> bodies;
   std::vector<Vector3> centres;       ///< Centres of the smallest balls around the bodies [m].
   std::vector<Vector3> speed_points;  ///< Points [m] or directions whose speeds are bounded.
-  /// Row k of axes and moments, with the axis zₖ through pₖ: zₖ and zₖ × pₖ if joint k is revolute, 0 and −zₖ if
-  /// prismatic.
+  /// Row k of axes and moments for joint k with the axis zₖ through pₖ: zₖ and zₖ × pₖ for a revolute joint, 0 and −zₖ
+  /// for a prismatic joint.
   Matrix<Joints, 3, Scalar> axes;
   Matrix<Joints, 3, Scalar> moments;
 

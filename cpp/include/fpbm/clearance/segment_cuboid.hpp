@@ -11,8 +11,8 @@
 namespace fpbm {
 
 /// Nearest point of a segment p + t d to the box |x_i| ≤ half_i, and the unit vector from the box to the segment. The
-/// segment is given in the frame of the box. If the segment is in the box: the smallest displacement that separates
-/// them.
+/// segment is given in the frame of the box. If the segment is in the box, gap and normal give the smallest
+/// displacement that moves the segment out of the box.
 template <typename Scalar>
 struct NearestToBox {
   using Vector3 = Vector<3, Scalar>;
@@ -79,9 +79,9 @@ struct NearestToBox {
     return low + (high - low) * (falling / (falling - rising));
   }
 
-  /// Normal and gap if the difference of the nearest points is too short to define a direction, or the segment is in
-  /// the box. The candidates are the separating axes of a box and a segment: the normals of the faces, and the cross
-  /// products of the edges with the segment (S. Gottschalk, M. C. Lin, D. Manocha, OBBTree, 1996).
+  /// Sets the normal and the gap if the difference of the nearest points is too short to define a direction, or the
+  /// segment is in the box. The candidates are the separating axes of a box and a segment: the normals of the faces,
+  /// and the cross products of the edges with the segment (S. Gottschalk, M. C. Lin, D. Manocha, OBBTree, 1996).
   [[gnu::noinline, gnu::cold]] void touch(const Segment<Scalar>& segment, const Vector3& half,
                                           const Vector3& between) noexcept {
     using std::abs;

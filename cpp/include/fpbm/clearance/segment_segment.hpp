@@ -60,11 +60,11 @@ struct NearestOfSegments {
     const auto half_extent = [&u, &v](const Vector3& n) { return (abs(n.dot(u)) + abs(n.dot(v))) / Scalar(2); };
     const Scalar size = u.cwiseAbs().sum() + v.cwiseAbs().sum();
     WidestGap<Scalar, decltype(half_extent)> widest(w + (u - v) / Scalar(2), half_extent, size);
-    // Perpendicular to each segment, unless its end is nearest.
+    // The normal is perpendicular to each segment whose nearest point is not an end.
     if (inside(s)) between = across(between, u);
     if (inside(t)) between = across(between, v);
     widest.offer(between);
-    // For nearly parallel segments, c is short, and its relative error is large. Its component along u is round-off
+    // For nearly parallel segments, c is short and has a large relative error. The component of c along u is round-off
     // error.
     widest.offer(across(c, u));
     widest.offer(perpendicular(u.squaredNorm() > v.squaredNorm() ? u : v));

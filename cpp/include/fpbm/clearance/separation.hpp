@@ -10,10 +10,10 @@ namespace fpbm {
 /// Planes that separate two shapes, all with the normal n (docs/clearance.md, "Proof"). n is fixed to the last common
 /// link of the chains to both shapes.
 ///
-/// Let a be an end of the axis of the first capsule, and b an end of the axis of the second capsule. Their gap is (n·a
-/// − radius of the first) − (n·b + radius of the second). The smallest gap is a lower bound on the distance of the
-/// shapes. In the posture in which n is the normal at the nearest points, the smallest gap equals the distance. If no
-/// joint moves the second shape only, its support along n replaces n·b + radius.
+/// Let a be an end of the axis of the first capsule, and b an end of the axis of the second capsule. The gap of a and b
+/// is (n·a − radius of the first) − (n·b + radius of the second). The smallest gap is a lower bound on the distance of
+/// the shapes. In the posture in which n is the normal at the nearest points, the smallest gap equals the distance. If
+/// no joint moves the second shape only, the support of the second shape along n replaces n·b + radius.
 template <typename Clearance>
 struct Separation {
   using Scalar = typename Clearance::Scalar;
@@ -30,8 +30,8 @@ struct Separation {
   AllJoints of_beyond[2];  ///< Gradient of `beyond`, if joints move the second shape only.
   int seconds = 1;         ///< Number of ends of the second shape that are used.
 
-  /// placed: the bodies of the clearance. found: nearest points of the pair in this placement. Both must outlive the
-  /// separation.
+  /// placed: the bodies of the clearance. found: nearest points of the pair in this placement. `placed` and `found`
+  /// must outlive the separation.
   Separation(const Clearance& clearance, const Placement& placed, const ShapePair& pair,
              const Nearest<Scalar>& found) noexcept
       : found_(found), first_(placed.bodies[pair.first]) {

@@ -8,16 +8,16 @@ namespace fpbm {
 
 /// Adds a row n·v ≤ most for each speed bound that the motion u would exceed.
 ///
-/// v is the velocity after the tick and after the acceleration is reduced to zero, q̇ + acting_ticks h u, or q̇ +
-/// acting_ticks (u − q̇) at velocity level. n is the direction of v. The speed may still exceed the bound by the change
-/// of the direction within the tick, or if the other rows and the joint limits admit no motion within the bound.
-/// placed: memory for the bodies in the middle of the tick.
+/// v is the velocity of the body after the tick and after the acceleration is reduced to zero. The joint velocities are
+/// then q̇ + acting_ticks h u, or q̇ + acting_ticks (u − q̇) at velocity level. n is the direction of v. The speed may
+/// still exceed the bound by the change of the direction within the tick, or if the other rows and the joint limits
+/// admit no motion within the bound. placed: memory for the bodies in the middle of the tick.
 template <Level kLevel, typename Clearance, int N, int P, typename Scalar>
 void bound_speeds(const Clearance& clearance, typename Clearance::Placement& placed,
                   const Limits<kLevel, N, Scalar>& limits, const State<N, Scalar>& state, Scalar acting_ticks,
                   const Vector<N, Scalar>& u, Rows<N, P, Scalar>& rows) noexcept {
   if (clearance.speed_bounds().empty()) return;
-  // The velocity after the tick is `constant` + g u.
+  // The joint velocities after the tick are `constant` + g u.
   const Scalar h = limits.tick();
   const Scalar g = kLevel == Level::kAcceleration ? acting_ticks * h : acting_ticks;
   const Vector<N, Scalar> constant = kLevel == Level::kAcceleration ? state.qd : (Scalar(1) - acting_ticks) * state.qd;

@@ -14,8 +14,8 @@ namespace fpbm {
 ///
 ///   lowerᵢ ≤ pᵢ ≤ upperᵢ        ‖(ṗᵢ)‖ ≤ velocity, over the coordinates of `rows`
 ///
-/// The bounds on the position hold at every tick, as in a clearance: a tick is executed only if the robot can stop from
-/// its end within the bounds. The bound on the speed holds as far as the joint limits and the other rows admit.
+/// The bounds on the position hold at every tick, as in a clearance: a tick is executed only if the robot can stop
+/// within the bounds after the tick. The bound on the speed holds as far as the joint limits and the other rows admit.
 template <typename Scalar = double>
 struct PositionBounds {
   static constexpr Scalar kNone = std::numeric_limits<Scalar>::infinity();
@@ -24,8 +24,8 @@ struct PositionBounds {
   Vector<3, Scalar> lower = Vector<3, Scalar>::Constant(-kNone);  ///< [m]
   Vector<3, Scalar> upper = Vector<3, Scalar>::Constant(kNone);   ///< [m]
   Scalar velocity = kNone;                                        ///< [m/s]
-  Scalar deceleration = kNone;                                    ///< Largest, toward lower and upper [m/s²].
-  std::array<bool, 3> rows = {true, true, true};                  ///< Coordinates of the speed.
+  Scalar deceleration = kNone;                                    ///< Largest deceleration toward the bounds [m/s²].
+  std::array<bool, 3> rows = {true, true, true};                  ///< Coordinates that the speed includes.
   std::string name = "tip";
 
   /// Throws std::invalid_argument if a bound is out of range, or the link does not exist.

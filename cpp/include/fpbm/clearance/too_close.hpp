@@ -22,8 +22,8 @@ class TooClose : public ParameterError {
   [[nodiscard]] const std::pair<std::string, std::string>& names() const noexcept { return names_; }
   [[nodiscard]] double margin() const noexcept { return margin_; }
 
-  /// The message. It proposes a smaller margin, unless the shapes overlap, and `remedy` in the syntax of the caller's
-  /// language.
+  /// The message, which proposes `remedy` in the syntax of the caller's language. If the shapes do not overlap, the
+  /// message also proposes a smaller margin.
   [[nodiscard]] static std::string text(const std::pair<std::string, std::string>& names, double distance,
                                         double margin, const std::string& remedy) {
     const double smaller = std::floor(distance * kDigits) / kDigits;

@@ -29,9 +29,9 @@ template <typename Scalar>
   return vector - vector.dot(direction) / squared * direction;
 }
 
-/// Whether the difference of two nearest points is long enough to define a direction. gap_squared: squared length of
-/// the difference. size_squared: squared size of the shapes. The direction then has all but a quarter of the digits of
-/// Scalar.
+/// Whether the difference of two nearest points is long enough to define a direction. In this case, the direction keeps
+/// three quarters of the digits of Scalar. gap_squared: squared length of the difference. size_squared: squared size of
+/// the shapes.
 template <typename Scalar>
 [[nodiscard]] bool tells_direction(Scalar gap_squared, Scalar size_squared) noexcept {
   using Limits = std::numeric_limits<Scalar>;
@@ -40,8 +40,8 @@ template <typename Scalar>
   return gap_squared > kRootOfEpsilon * size_squared + kNoRoundOff;
 }
 
-/// Finds the normal at the nearest points of two shapes that touch or overlap. Of the directions offered, this is the
-/// unit vector n with the largest
+/// Finds the normal at the nearest points of two shapes that touch or overlap. The normal is the unit vector n, among
+/// the offered directions, with the largest
 ///
 ///   gap(n) = |n·offset| − reach(n),
 ///

@@ -4,11 +4,12 @@
 
 namespace fpbm {
 
-/// Limits::box_in_time(), with the bounds of `tick`, the box of this tick, if the bound on jerk does not restrict
-/// `tick`. These bounds are copied bit for bit. `last`: acceleration of the last tick.
+/// Limits::box_in_time(), with the bounds of `tick` that the bound on jerk does not restrict, copied bit for bit. tick:
+/// Limits::box() for this tick. last: acceleration of the last tick.
 ///
-/// Both boxes compute these bounds by iteration, with different errors. If a goal exceeded a bound of the tick by this
-/// error, the whole motion would be scaled down because of a joint on this bound.
+/// Limits::box_in_time() and Limits::box() compute these bounds by iteration, with different errors. If a goal exceeded
+/// a bound of `tick` by the difference of the errors, the whole motion would be scaled down because of a joint on this
+/// bound.
 template <Level kLevel, int N, typename Scalar>
 [[nodiscard]] Box<N, Scalar> box_in_time(const Limits<kLevel, N, Scalar>& limits, const State<N, Scalar>& state,
                                          const Vector<N, Scalar>& last, const Box<N, Scalar>& tick) noexcept {

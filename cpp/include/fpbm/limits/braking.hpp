@@ -6,7 +6,7 @@ namespace fpbm {
 
 /// Braking motion: all joints reduce their velocities in proportion, as fast as their bounds on acceleration and jerk
 /// allow. If the box requires a joint to brake harder, the joint brakes harder. At acceleration level, a joint beyond
-/// its range stops there.
+/// its range stops beyond its range.
 ///
 /// least: smallest time constant of the stop [s], by default one tick. At the end of the stop, the velocities decay as
 /// exp(−t/least).
@@ -57,7 +57,8 @@ template <Level kLevel, int N, typename Scalar>
   return u;
 }
 
-/// Accelerations if the joint states are unknown: `last`, reduced toward zero, as fast as the bounds on jerk allow.
+/// Accelerations of a tick with unknown joint states: the acceleration `last`, reduced toward zero as fast as the
+/// bounds on jerk allow.
 template <Level kLevel, int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> fade(const Limits<kLevel, N, Scalar>& limits, const Vector<N, Scalar>& last) noexcept {
   const Vector<N, Scalar>& jerk = limits.bounds().jerk;

@@ -15,21 +15,21 @@ namespace fpbm {
 /// null space. kMost: largest dimension of the null space. kEntries: largest number of rows of the basis Z.
 ///
 /// Stores the factorisation Z_heldᵀ = QR, where Z_held are the rows of Z of the held joints, one column of Z_heldᵀ for
-/// each held joint.
+/// each held joint. u is the joint motion in the units of the joints, and s the task scale (NullSpaceSaturation).
 template <int kMost, int kEntries, typename Scalar>
 class HeldJoints {
  public:
   // The ranges below are those of double with which `fpbm_tests --gtest_filter='DegenerateSaturation*'` passes.
 
   static constexpr Scalar kEpsilon = std::numeric_limits<Scalar>::epsilon();
-  /// Smallest length of the part of a joint's row of Z that is orthogonal to the rows of the held joints, for a joint
-  /// that is held in addition: about √ε. A shorter part is mostly round-off error. A slow joint may be held with a
-  /// shorter part, if the round-off error of the direction of the part, ε/part, times the motion, rate/part, is less
-  /// than 1. Range: 1e-10 to 1e-6.
+  /// Smallest length of the independent part of a joint's row of Z, for a joint that is held in addition: about √ε. The
+  /// independent part is orthogonal to the rows of the held joints. A shorter part is mostly round-off error. A slow
+  /// joint may be held with a shorter part, if the round-off error of the direction of the part, ε/part, times the
+  /// motion, rate/part, is less than 1. Range: 1e-10 to 1e-6.
   static constexpr Scalar kIndependent = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-8) : Scalar(3e-4);
 
-  /// A joint with a shorter part does not move in the null space, because this part is the round-off error of a basis
-  /// of unit length: about ε for each of the at most 64 joints. Without this threshold, holding a joint against a
+  /// A joint with a shorter independent part does not move in the null space: this part is the round-off error of a
+  /// basis of unit length, about ε for each of the at most 64 joints. Without this threshold, holding a joint against a
   /// motion of 1e-13 would move other joints to their bounds
   /// (DegenerateSaturation.round_off_error_of_the_basis_moves_no_joint). Range: 64 ε to 640 ε.
   static constexpr Scalar kIdle = Scalar(64) * kEpsilon;
@@ -37,10 +37,10 @@ class HeldJoints {
   /// Round-off error of Z. The basis of SelfMotion has an error of 5e-13 if the condition number of J is 1e3. Range:
   /// 1e-13 to 1e-12. With 1e-14, a task scale is 0.1 too small; with 1e-11, motions leave the line of the task.
   static constexpr Scalar kRoundOff = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-12) : Scalar(3e-5);
-  /// Largest factor by which the held joints may amplify a round-off error. At most 1e-10 of the motion then deviates
-  /// from the line of the task. Range: 1 to 1000. With 1e5, a motion leaves the line of the task.
+  /// Largest factor by which the held joints may amplify a round-off error. With this factor, at most 1e-10 of the
+  /// motion deviates from the line of the task. Range: 1 to 1000. With 1e5, a motion leaves the line of the task.
   static constexpr Scalar kAmplified = Scalar(100);
-  /// du/ds above which a step is mostly round-off error. A step that moves a joint by a whole unit then increases s by
+  /// du/ds above which a step is mostly round-off error: if the step moves a joint by a whole unit, s increases by
   /// almost nothing. Range: 1e7 to 1e14.
   static constexpr Scalar kSteepest = Scalar(100) / kIndependent;
 
@@ -82,12 +82,12 @@ class HeldJoints {
     return rate;
   }
 
-  /// Holds a joint on its bound, in addition to the held joints or instead of a held joint that can leave its bound.
-  /// Returns false if neither is possible.
+  /// Holds a joint on its bound, in addition to the held joints or instead of a held joint that can leave its bound. If
+  /// the joint depends on the held joints and its remaining motion is round-off error, the joint does not need to be
+  /// held. In all other cases, returns false.
   ///
   /// above: whether the joint is on its upper bound. rate: |du/ds| of the joint. remaining: 1 − s. round_off():
-  /// round-off error of the motions of independent joints. If the joint depends on the held joints and its remaining
-  /// motion is round-off error, the joint does not need to be held.
+  /// round-off error of the motions of independent joints.
   template <typename Basis, typename RoundOff>
   [[nodiscard]] bool hold(const Basis& Z, Eigen::Index joint, bool above, Scalar rate, Scalar remaining,
                           RoundOff&& round_off) noexcept {
@@ -125,8 +125,8 @@ class HeldJoints {
     return c;
   }
 
-  /// Holds a joint instead of the held joint that leaves its bound fastest, if the coefficient of the held joint
-  /// exceeds `least`. Otherwise, returns false.
+  /// Holds a joint instead of the held joint that leaves its bound fastest. If the coefficient of this held joint is
+  /// not above `least`, returns false.
   template <typename Basis>
   [[nodiscard]] bool replace(const Basis& Z, Eigen::Index joint, bool above, const Free& c, Scalar least) noexcept {
     int leaving = -1;

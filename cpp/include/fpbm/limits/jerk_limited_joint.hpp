@@ -22,12 +22,12 @@ struct Interval {
 /// The acceleration u is constant during a tick. The jerk is (u − u₋)/h, where u₋ is the acceleration of the previous
 /// tick. A state (q, q̇, u) is viable toward the upper end if the velocity bound and the envelope hold while the
 /// acceleration decreases at the jerk −J. For the lower end, the same condition applies to −q. From a viable state, the
-/// joint can follow an envelope of offset c and deceleration d ≤ A until it is at rest, since this needs jerks of at
-/// most d²/c ≤ J.
+/// joint can follow an envelope of offset c and deceleration d ≤ A until rest, since following the envelope needs jerks
+/// of at most d²/c ≤ J.
 ///
-/// The piecewise-constant acceleration leads the continuous ramp. Therefore, at least one admissible acceleration after
-/// a viable state leads to a viable state, without a margin. The largest velocity and the largest excess over an
-/// envelope increase with u, so these accelerations are an interval.
+/// The piecewise-constant acceleration leads the continuous ramp. Therefore, after a viable state, at least one
+/// admissible acceleration leads to a viable state, and no margin is needed. The largest velocity and the largest
+/// excess over an envelope increase with u. Therefore, the accelerations that lead to a viable state are an interval.
 ///
 /// If no envelope is given, c = 2A²/J. With c = 0, a joint that is pushed against its end would chatter.
 ///
@@ -42,7 +42,7 @@ struct JerkLimitedJoint {
   VelocityEnvelope<kLevel, Scalar> lower;  ///< For −q.
   Scalar tick;                             ///< h [s]
 
-  /// Whether some state that differs from `at` by at most `error` is viable. Velocities may be differences of positions
+  /// Whether any state that differs from `at` by at most `error` is viable. Velocities may be differences of positions
   /// over a tick.
   [[nodiscard]] bool viable(const AxisState<Scalar>& at, const AxisState<Scalar>& error = {}) const noexcept {
     return is_far_from_bounds(at) || is_viable_near_bounds(at, error);
@@ -57,8 +57,9 @@ struct JerkLimitedJoint {
   /// Accelerations within the bound on acceleration, for every last acceleration.
   [[nodiscard]] Interval<Scalar> after_any() const noexcept { return {-stop.acceleration, stop.acceleration}; }
 
-  /// Accelerations in the interval `some` that lead to a viable state. If none does, the acceleration that leads
-  /// nearest to a viable state. A joint beyond its range returns, and stops at its end.
+  /// Accelerations in the interval `some` that lead to a viable state. If no acceleration leads to a viable state,
+  /// returns the acceleration after which the state is nearest to a viable state. A joint beyond its range returns, and
+  /// stops at its end.
   [[nodiscard]] Interval<Scalar> viable(Interval<Scalar> some, Scalar q, Scalar qd) const noexcept {
     const Scalar high = largest_viable(upper, q, qd, some);
     const Scalar low = -largest_viable(lower, -q, -qd, {-some.high, -some.low});
@@ -112,7 +113,8 @@ struct JerkLimitedJoint {
   }
 
   /// Whether a state satisfies the two conditions of docs/limits.md, Bounds on jerk, toward one end: w + a²/2J ≤ v for
-  /// a > 0, up to `slack` [rad/s], and G ≤ 0.
+  /// a > 0, up to `slack` [rad/s], and G ≤ 0 (VelocityEnvelope::excess()). w is the velocity of the state, a its
+  /// acceleration, and v the bound on the velocity.
   [[nodiscard]] bool is_viable_toward(const VelocityEnvelope<kLevel, Scalar>& envelope, const AxisState<Scalar>& at,
                                       Scalar slack) const noexcept {
     const Scalar rises = std::max(at.a, Scalar(0));
@@ -120,7 +122,7 @@ struct JerkLimitedJoint {
            !(envelope.excess(stop.jerk, {at.q - envelope.stop_position, at.v, at.a}) > Scalar(0));
   }
 
-  /// Iterations of the search for G = 0, which approaches its solution from below. In 1,562 random states near the
+  /// Iterations of the search for G = 0. The iterates approach the solution from below. In 1,562 random states near the
   /// envelope (J/A from 20 to 500 /s, ticks of 1 and 10 ms), the result is at most 3e-6 Jh below the solution (4
   /// iterations: 4e-4 Jh, 10 iterations: round-off).
   static constexpr int kRounds = 6;
@@ -130,8 +132,8 @@ struct JerkLimitedJoint {
   /// the bound on velocity and G ≤ 0 (docs/limits.md, Bounds on jerk). q and qd increase toward this end. rounds:
   /// largest number of iterations of the search for G = 0.
   ///
-  /// If no acceleration leads to a viable state, returns some.low. Exception: a joint that would exceed the envelope by
-  /// round-off only stops within the tick, at the acceleration −q̇/h.
+  /// If no acceleration leads to a viable state, returns some.low. Exception: a joint that would exceed the envelope
+  /// only by round-off stops within the tick, at the acceleration −q̇/h.
   [[nodiscard]] Scalar largest_viable(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar q, Scalar qd,
                                       Interval<Scalar> some, int rounds = kRounds) const noexcept {
     const Scalar speed_slack = velocity - qd;
@@ -148,22 +150,22 @@ struct JerkLimitedJoint {
     const Scalar high = within_velocity(speed_slack, some);
     if (!(envelope.stop_position < std::numeric_limits<Scalar>::infinity())) return high;
     const Scalar from = q - envelope.stop_position;
-    // Upper end of the search: the acceleration that the envelope admits without a bound on jerk. It is the solution if
-    // the joint already brakes along the envelope, and slightly too large otherwise.
+    // Upper end of the search: the acceleration that the envelope admits without a bound on jerk. If the joint already
+    // brakes along the envelope, this acceleration is the solution. Otherwise, it is slightly too large.
     const Scalar falling = (envelope.largest_velocity(q, qd, tick) - qd) / tick;
     const auto excess = [&](Scalar u) noexcept { return this->excess_after(envelope, from, qd, u); };
     const Scalar found =
         largest_below_zero(excess, some.low, from > Scalar(0) ? high : std::clamp(falling, some.low, high), rounds);
     if (found > some.low) return found;
-    // At most some.low keeps the envelope. A joint that round-off has brought to its end stops there: with some.low,
-    // the joint would leave its end at full jerk.
+    // No acceleration above some.low keeps the envelope. A joint that is at its end because of round-off stops there:
+    // with some.low, the joint would leave its end at full jerk.
     const Scalar halts = std::clamp(-qd / tick, some.low, high);
     return excess(halts) <= round_off(envelope, q) ? halts : found;
   }
 
-  /// Largest acceleration u in the interval `some` with which q̇ increases by at most `speed_slack` [rad/s] in the tick
-  /// and while the jerk −J then reduces u to zero: the positive root of u h + u²/2J = speed_slack, or u = speed_slack/h
-  /// if `speed_slack` is negative. If the velocity is unbounded, some.high.
+  /// Largest acceleration u in the interval `some` with which q̇ increases by at most `speed_slack` [rad/s], in the
+  /// tick and in the following reduction of u to zero at the jerk −J. This is the positive root of u h + u²/2J =
+  /// speed_slack, or u = speed_slack/h if `speed_slack` is negative. If the velocity is unbounded, returns some.high.
   [[nodiscard]] Scalar within_velocity(Scalar speed_slack, Interval<Scalar> some) const noexcept {
     using std::sqrt;
     const Scalar ratio = tick / speed_slack;
@@ -186,9 +188,9 @@ struct JerkLimitedJoint {
     return qd > Scalar(0) && next < Scalar(0) ? std::max(excess, from - qd * qd / (Scalar(2) * u)) : excess;
   }
 
-  /// viable() if few iterations find no acceleration that keeps the envelopes of both ends. More iterations find an
-  /// acceleration, except for round-off errors. In this case, the bound on velocity has priority, and both envelopes
-  /// are exceeded equally.
+  /// Result of viable() if few iterations find no acceleration that keeps the envelopes of both ends. More iterations
+  /// find an acceleration, unless round-off errors prevent this. If round-off errors prevent this, the bound on
+  /// velocity has priority, and both envelopes are exceeded equally.
   [[nodiscard, gnu::noinline]] Interval<Scalar> least_excess(Interval<Scalar> some, Scalar q,
                                                              Scalar qd) const noexcept {
     const Interval<Scalar> mirrored{-some.high, -some.low};

@@ -12,14 +12,14 @@
 
 namespace fpbm {
 
-/// Freedom f of the direction b of a task, from 0 (blocked) to 1, where the motion u keeps this direction and the
-/// motion `other` does not (docs/limits.md, Saturation in the null space):
+/// Freedom f of the direction b of a task, from 0 (blocked) to 1. The motion u keeps the direction b, and the motion
+/// `other` does not (docs/limits.md, Saturation in the null space):
 ///
 ///   min((J u · b)/(0.3 J other · b), 1) min((σ_b/σ₀)², 1),    σ_b = ‖Jᵀb‖/(‖J‖‖b‖)
 ///
-/// The first factor compares the parts of the task that both motions realise. If only the demand is large, both parts
-/// are small, but u realises a large fraction of the part of `other`. If the posture loses the direction b, both
-/// parts are small too; there, the second factor is small.
+/// The first factor compares the parts of the task that both motions realise. If the parts are small because the demand
+/// is large, u realises a large fraction of the part of `other`, and the first factor is not small. If the parts are
+/// small because the posture loses the direction b, the second factor is small.
 template <int M, int N, typename Scalar>
 [[nodiscard]] Scalar freedom(const Matrix<M, N, Scalar>& J, const Vector<M, Scalar>& task, const Vector<N, Scalar>& u,
                              const Vector<N, Scalar>& other) noexcept {

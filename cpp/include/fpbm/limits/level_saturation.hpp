@@ -18,7 +18,8 @@ namespace fpbm {
 /// where Z_k is a basis of the null space of J₁ … J_k (LevelSpace). With the null-space motion Z_k γ, other joints
 /// compensate for joints on their bounds (NullSpaceSaturation). u_k keeps every bound that rest keeps. J_i u of a
 /// higher level i changes by round-off error only. s_k is the optimum of the linear program in s_k and γ. If the higher
-/// levels contradict a task, d is the least-squares solution, and s_k is the scale of d. docs/limits.md has the proofs.
+/// levels contradict a task, d is the least-squares solution, and s_k scales the step from u_{k−1} to d. docs/limits.md
+/// has the proofs.
 template <int N, typename Scalar = double, int P = 0>
 class LevelSaturation {
  public:
@@ -50,8 +51,8 @@ class LevelSaturation {
     });
   }
 
-  /// tr Δ/ε² of the last level, about the number of its lost directions, plus the number of its dependent rows. 0
-  /// without damping.
+  /// tr Δ/ε² of the last level: about the number of lost directions of the level, plus the number of its dependent
+  /// rows. Without damping, 0.
   [[nodiscard]] Scalar lost() const noexcept { return lost_; }
 
   /// u_k of the last level.

@@ -39,8 +39,8 @@ class Limiter {
   using Result = decltype(with_scale(std::declval<const Tasks&>(), std::declval<const JointVector&>(), Scalar(1)));
 
   /// reserve: fraction of each joint's bound on acceleration that the levels below the first level leave to the first
-  /// level. Of the bound on velocity, they leave half of this fraction. 0: the first level has no reserve, and all
-  /// levels share the limits. Throws std::invalid_argument if reserve is not in [0, 1].
+  /// level. These levels leave half of this fraction of the bound on velocity. 0: the first level has no reserve, and
+  /// all levels share the limits. Throws std::invalid_argument if reserve is not in [0, 1].
   explicit Limiter(const Limits<kLevel, N, Scalar>& limits, Scalar reserve = Scalar(0))
       : limits_(limits),
         lower_limits_(reserved_limits(limits, reserve)),
@@ -53,7 +53,7 @@ class Limiter {
 
   [[nodiscard]] const Limits<kLevel, N, Scalar>& limits() const noexcept { return limits_; }
 
-  /// Whether the limits, minus the reserve, admit a tick from one state to another. This tick needs no limiter.
+  /// Whether the limits, minus the reserve, admit a tick from one state to another. If so, the tick needs no limiter.
   [[nodiscard]] bool admits(const JointState& from, const JointState& to, const JointVector& last) const noexcept {
     return lower_limits_.admits(from, to, last);
   }
@@ -98,8 +98,8 @@ class Limiter {
 
  private:
   /// motion() for a desired motion u₀ that the rows do not admit: limits the nearest motion u that the rows admit
-  /// (inverse_task_metric()). The task scale of each level is multiplied by 1 − c, where c = min(‖J_k(u − u₀)‖/‖J_k
-  /// u₀‖, 1) is its relative change, unless c ≤ kNegligibleChange.
+  /// (inverse_task_metric()). The relative change of level k is c = min(‖J_k(u − u₀)‖/‖J_k u₀‖, 1). If
+  /// c > kNegligibleChange, the task scale of the level is multiplied by 1 − c.
   template <typename Tasks, int P>
   [[nodiscard]] Result<Tasks> limit_with_rows(const Rows<N, P, Scalar>& rows, const Tasks& tasks,
                                               const JointState& state, const JointVector& desired,
@@ -198,9 +198,9 @@ class Limiter {
     return found;
   }
 
-  /// Relative change c of a level in limit_with_rows() up to which its task scale is not reduced. A definition: the
-  /// cost μ of null-space motion (inverse_task_metric()) leaves a small c, which is not reported as a blocked task
-  /// (LimiterRows.scale_the_task_by_its_relative_change).
+  /// Largest relative change c of a level in limit_with_rows() with which the task scale is not reduced. The value is a
+  /// definition. The cost μ of null-space motion (inverse_task_metric()) causes a small c, which is not reported as a
+  /// blocked task (LimiterRows.scale_the_task_by_its_relative_change).
   static constexpr Scalar kNegligibleChange = Scalar(0.01);
 
   Limits<kLevel, N, Scalar> limits_;

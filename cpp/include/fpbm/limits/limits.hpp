@@ -20,10 +20,12 @@ namespace fpbm {
 /// A state is viable if the velocity of every joint is within its bound and within the braking envelopes of both ends
 /// of the range. From a viable state, some acceleration within its bound, constant for one tick of length h, leads to a
 /// viable state, and every joint can stop (viability: Del Prete 2018, here in discrete time). The envelope of a bound A
-/// on acceleration has the offset A h/2, the cost of one tick of delay. box() is the set of these accelerations, or of
-/// velocities at velocity level. A motion in the box never violates a bound, at ticks or between ticks. Joints with a
-/// bound on jerk have another viable set (JerkLimitedJoint), which includes the acceleration of the last tick. This
-/// acceleration is the argument `last`, zero for an arm at rest.
+/// on acceleration has the offset A h/2, the cost of one tick of delay.
+///
+/// box() is the set of accelerations that lead to a viable state, or the set of velocities at velocity level. A motion
+/// in the box never violates a bound, at ticks or between ticks. Joints with a bound on jerk have another viable set
+/// (JerkLimitedJoint), which includes the acceleration of the last tick. The acceleration of the last tick is the
+/// argument `last`, zero for an arm at rest.
 template <Level kLevel, int N, typename Scalar = double>
 class Limits {
  public:
@@ -118,9 +120,9 @@ class Limits {
 
   /// Whether differences of commanded positions keep the bounds V on velocity and A on acceleration in a tick of
   /// varying acceleration: the mean velocity v = (to.q − from.q)/h is within V, and |v − qd| ≤ A h/2 at both ends of
-  /// the tick. The second difference of positions over these two ticks is h (qd − v₁) + h (v₂ − qd), with the velocity
-  /// qd between the ticks, and therefore at most A h². A tick of constant acceleration within the bounds satisfies this
-  /// condition up to round-off.
+  /// the tick. For two consecutive ticks with the mean velocities v₁ and v₂, and the velocity qd between the ticks, the
+  /// second difference of positions is h (qd − v₁) + h (v₂ − qd), and therefore at most A h². A tick of constant
+  /// acceleration within the bounds satisfies this condition up to round-off.
   [[nodiscard]] bool admits_differences(const State<N, Scalar>& from, const State<N, Scalar>& to) const noexcept {
     bool good = true;
     for (Eigen::Index i = 0; i < to.q.size(); ++i) {

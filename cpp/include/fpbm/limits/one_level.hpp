@@ -27,7 +27,7 @@ void set_scale(SaturatedMotion<N, Scalar>& motion, Scalar scale) noexcept {
   motion.scale = scale;
 }
 
-/// Multiplies the scale of each level by the scale of this level in another motion.
+/// Multiplies the scale of each level by the scale that another motion has for the level.
 template <int N, typename Scalar>
 void multiply_scales(SaturatedMotion<N, Scalar>& motion, const SaturatedMotion<N, Scalar>& other) noexcept {
   motion.scale *= other.scale;
@@ -46,7 +46,7 @@ template <int M, int N, typename Scalar, int P>
   return {J, unit, rows};
 }
 
-/// Resolves the levels below the first level. A single task has none.
+/// Resolves the levels below the first level. A single task has no lower levels.
 template <int M, int N, typename Scalar, int P>
 void resolve_lower(const NullSpaceSaturation<M, N, Scalar, P>&, const Box<N, Scalar>&, const Vector<N, Scalar>&,
                    const SaturatedMotion<N, Scalar>&) noexcept {}

@@ -44,8 +44,8 @@ class RowProjection {
     }
   }
 
-  /// The nearest motion. If `solved` is set, the result is exact up to round-off. Otherwise the rows admit no motion,
-  /// or almost none.
+  /// The nearest motion. If `solved` is set, the result is exact up to round-off. Otherwise, no motion or almost no
+  /// motion satisfies the rows.
   [[nodiscard]] JointVector operator()(const JointVector& desired) noexcept {
     u_ = desired;
     count_ = 0;
@@ -77,8 +77,8 @@ class RowProjection {
   static constexpr int kMost = P < kCapacity<N> ? P : kCapacity<N>;
   /// As in Rows::admitted_fraction().
   static constexpr Scalar kRoundOff = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
-  /// The row to be added counts as linearly dependent on the active rows if the independent part of gᵀH⁻¹g is below
-  /// this fraction of gᵀH⁻¹g. In double, RowProjection.is_optimal passes with 1e-12 to 1e-5. In 500 random
+  /// If the independent part of gᵀH⁻¹g is below this fraction of gᵀH⁻¹g, the row g to be added is treated as linearly
+  /// dependent on the active rows. In double, RowProjection.is_optimal passes with 1e-12 to 1e-5. In 500 random
   /// problems of 18 rows, 1e-15 to 1e-7 give the same results; with 1e-5, 21 instead of 2 problems are not solved.
   static constexpr Scalar kIndependent = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-9) : Scalar(1e-5);
   using Rates = Vector<Eigen::Dynamic, Scalar>;

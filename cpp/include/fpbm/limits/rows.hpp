@@ -43,8 +43,8 @@ struct Rows {
     return true;
   }
 
-  /// Largest fraction, at most 1, of the step between two motions that the rows admit. The motion `from` satisfies the
-  /// rows up to round-off.
+  /// Largest fraction, at most 1, of the step from one motion to another with which the result satisfies the rows. The
+  /// motion `from` satisfies the rows up to round-off.
   [[nodiscard]] Scalar admitted_fraction(const Vector<N, Scalar>& from, const Vector<N, Scalar>& to) const noexcept {
     // The round-off error of g_k·u is at most (n/2) ε Σ|g_ki u_i| (Higham 2002, (3.5)), with n ≤ kMaxDof = 64. The
     // factor 64 is twice this bound.
@@ -59,7 +59,8 @@ struct Rows {
     return fraction;
   }
 
-  /// A motion in a box that satisfies the rows, or almost, near u. If u satisfies the rows, the result is u.
+  /// A motion near u in a box. The motion satisfies the rows, at least approximately. If u satisfies the rows, the
+  /// result is u.
   [[nodiscard]] Vector<N, Scalar> near(Vector<N, Scalar> u, const Box<N, Scalar>& box) const noexcept {
     // Alternating projections: in 90 % of 400 random problems of 8 rows and 7 joints, at most 4 % of the largest excess
     // remains (4 rounds: 12 %, 16 rounds: 0.6 %).
@@ -81,7 +82,7 @@ struct Rows {
     return u;
   }
 
-  /// The rows, with each b_k increased as far as u needs.
+  /// The rows, with b_k increased for each row k that u violates, so that u satisfies the row.
   [[nodiscard]] Rows widened(const Vector<N, Scalar>& u) const noexcept {
     Rows wider = *this;
     for (Eigen::Index k = 0; k < count; ++k) wider.b(k) += std::max(excess(k, u), Scalar(0));

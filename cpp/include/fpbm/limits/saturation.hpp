@@ -21,8 +21,8 @@ namespace fpbm {
 ///   J u = J rest + s J (desired − rest),   s ≤ 1 as large as possible,
 ///
 /// where `rest` is a braking motion within the box. The algorithm starts from u = rest and s = 0, and raises s. If a
-/// joint meets its bound, the joint is held there, and other joints compensate by the null-space motion of least norm
-/// in the units of the joints. If the null space has no freedom for this, a joint whose bound blocks the task is
+/// joint meets its bound, the joint is held on the bound, and other joints compensate by the null-space motion of least
+/// norm in the units of the joints. If no null-space motion can compensate, a joint whose bound blocks the task is
 /// released, as in the simplex method. If no joint can be released, s is the optimum of a linear program. Each bound
 /// that is met costs one pass. There are at most 3n passes (random problems need up to 1.7n). After every pass, u is in
 /// the box and on the line of the task.
@@ -147,18 +147,18 @@ class NullSpaceSaturation {
 
   // `fpbm_tests --gtest_filter='DegenerateSaturation*'` passes with the ranges below.
 
-  /// Fraction of the largest possible |v|² above which v has lost at most two digits: |v| is then at least 1/100 of its
-  /// largest possible length. Range: 1e-8 to 1e-2.
+  /// Smallest |v|² of a self-motion v in SelfMotion, as a fraction of the largest possible |v|². |v| is then at least
+  /// 1/100 of its largest possible length, and v has lost at most two digits. Range: 1e-8 to 1e-2.
   static constexpr Scalar kRegular = Scalar(1e-4);
-  /// Largest number of passes for each joint or row. With 2, the test passes; with 1, 46 of its 16,500 problems are not
+  /// Largest number of passes for each joint or row. With 2, the tests pass; with 1, 46 of the 16,500 problems are not
   /// solved. `fpbm_tests --gtest_filter='*Saturation*'` prints the largest number of passes.
   static constexpr int kPasses = 3;
-  /// Fraction of the largest rate up to which the rate of a joint is round-off error. This joint does not move. Range:
-  /// ε to 1000 ε. With 16,000 ε, a motion leaves the line of the task.
+  /// A rate up to this fraction of the largest rate is round-off error: a joint with a smaller rate does not move.
+  /// Range: ε to 1000 ε. With 16,000 ε, a motion leaves the line of the task.
   static constexpr Scalar kStill = Scalar(16) * std::numeric_limits<Scalar>::epsilon();
 
-  /// Z for an arm with one self-motion v, away from singular postures: v in the units of the joints, with length 1.
-  /// Otherwise, returns false.
+  /// Sets Z for an arm with one self-motion v, away from singular postures: v in the units of the joints, with
+  /// length 1. For other arms and postures, returns false.
   [[nodiscard]] bool set_self_motion([[maybe_unused]] const Matrix<M, N, Scalar>& J,
                                      [[maybe_unused]] Eigen::Index rows) noexcept {
     if constexpr (kHasSelfMotion<M, N>) {

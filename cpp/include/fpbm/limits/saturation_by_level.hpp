@@ -21,7 +21,7 @@ namespace fpbm {
 ///
 /// u* determines the commands b_k = J_k u* and the preferred null-space motion. J_k d = J_k u*. If the scale of every
 /// higher level is 1, d = u*. In lost directions, the pseudoinverse is damped (ScaledLevel, DampedLevel, kLevelRadius).
-/// The first level is resolved by NullSpaceSaturation: J u* together with the null-space motion of u*.
+/// NullSpaceSaturation resolves the first level, with the task J₁ u* and the null-space motion of u*.
 template <int N, typename Scalar, int P, typename... Matrices>
 class SaturationByLevel {
  public:
@@ -139,7 +139,7 @@ void resolve_lower(const SaturationByLevel<N, Scalar, P, Matrices...>& saturatio
   saturation.resolve_lower(box, desired, found);
 }
 
-/// Part of a motion that changes no level.
+/// Part of a motion in the null space of all levels.
 template <int N, typename Scalar, typename... Matrices>
 [[nodiscard]] Vector<N, Scalar> null_space_motion(const TaskLevels<N, Scalar, Matrices...>& levels,
                                                   const Vector<N, Scalar>& v) noexcept {

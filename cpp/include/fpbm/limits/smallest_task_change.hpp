@@ -43,7 +43,7 @@ template <int M, int N, int P, typename Scalar>
   for (Eigen::Index i = 0; i < J.rows(); ++i) gram(i, i) += mu;
   Cholesky<M, Scalar> cholesky;
   if (cholesky.factor(gram) != Status::kOk) return {delta, Scalar(0)};
-  std::array<Vector<M, Scalar>, P> normals;  // J⁺ᵀg_k, the gradient of row k by δ.
+  std::array<Vector<M, Scalar>, P> normals;  // J⁺ᵀg_k, the gradient of row k with respect to δ.
   Vector<P, Scalar> squares;
   Vector<P, Scalar> excess;  // g_k·u − b_k
   Vector<P, Scalar> multipliers;

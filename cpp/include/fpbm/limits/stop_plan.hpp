@@ -77,7 +77,7 @@ class StopPlan {
     StopDisplacement<N, Scalar> result = StopDisplacement<N, Scalar>::none(n);
     const Scalar ticks = Scalar(1) + profile_.coasting_ticks(kLevel);
     // Deficit of the displacement in the last tick, compared with a tick at the velocity after the ramp, divided by h²
-    // last_. At velocity level, the velocity at the end of the tick counts.
+    // last_. At velocity level, the displacement of the last tick is h times the velocity at the end of the tick.
     const Scalar tick_deficit = ramp_velocity_change() + (kLevel == Level::kVelocity ? Scalar(0) : Scalar(0.5));
     for (Eigen::Index i = 0; i < n; ++i) {
       if (!stops_alone(i)) {
@@ -154,7 +154,7 @@ class StopPlan {
  private:
   /// Number of ticks in which an acceleration changes to zero by at most `change` in each tick. Accelerations at the
   /// bound on jerk are multiples of `change` up to the round-off error of a difference of velocities, about 300 ε for
-  /// 2 rad/s, 1 ms and 7500 rad/s³: the tolerance of 512 ε does not count a tick for this error.
+  /// 2 rad/s, 1 ms and 7500 rad/s³. Because of the tolerance of 512 ε, this error does not add a tick.
   [[nodiscard]] static Scalar ticks_for(Scalar acceleration, Scalar change) noexcept {
     using std::ceil;
     constexpr Scalar kRoundOff = Scalar(512) * std::numeric_limits<Scalar>::epsilon();

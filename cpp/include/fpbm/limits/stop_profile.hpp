@@ -31,16 +31,16 @@ struct StopProfile {
     return {Scalar(0), ramp, std::max(Scalar(2) * ramp, ramp + ceil(speed / (h * deceleration))) - Scalar(1)};
   }
 
-  /// Profile in which the joints of both profiles stop, each with no larger deceleration than in its own profile.
+  /// Profile with which the joints of both profiles stop. No joint has a larger deceleration than in its own profile.
   [[nodiscard]] StopProfile together(const StopProfile& other) const noexcept {
     const Scalar longest = std::max(ramp, other.ramp);
-    // Must not decrease, since b depends on this difference.
+    // brake − ramp must not decrease, since b depends on this difference.
     const Scalar even = std::max(brake - ramp, other.brake - other.ramp);
     return {std::max(wait, other.wait), longest, longest + std::max(longest - Scalar(1), even)};
   }
 
   /// Number of ticks at the velocity v that cover the stopping distance. At velocity level, the displacement in a tick
-  /// is h times the velocity at its end.
+  /// is h times the velocity at the end of the tick.
   [[nodiscard]] Scalar coasting_ticks(Level level) const noexcept {
     return wait + (level == Level::kVelocity ? std::max(brake - Scalar(1), Scalar(0)) : brake) / Scalar(2);
   }

@@ -43,7 +43,7 @@ class TaskLevels {
   std::tuple<Matrices...> J_;
 };
 
-/// Joint motion within a box that resolves task levels.
+/// Joint motion that resolves task levels within a box.
 template <int N, typename Scalar, int K>
 struct SaturatedLevels : SaturatedMotion<N, Scalar> {
   std::array<Scalar, K> scales;  ///< Task scale s_k of each level. scales[0] is scale.

@@ -19,9 +19,9 @@ template <Level kLevel, int N, typename Scalar>
   }
 }
 
-/// At velocity level, reduces the change from qd to `goal` so that the accelerations have time to decrease to zero
-/// before the end of the change. The fraction is the same for all joints, so the change keeps its direction. At
-/// acceleration level, returns `goal`.
+/// At velocity level, reduces the change from qd to `goal` in a tick to a fraction with which the accelerations can
+/// decrease to zero before the velocities pass `goal`. The fraction is the same for all joints, so the change keeps its
+/// direction. At acceleration level, returns `goal`.
 template <Level kLevel, int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> approach(const Limits<kLevel, N, Scalar>& limits, const Vector<N, Scalar>& qd,
                                          const Vector<N, Scalar>& goal) noexcept {

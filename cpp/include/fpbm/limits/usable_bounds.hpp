@@ -10,11 +10,12 @@
 
 namespace fpbm {
 
-/// Bounds of joint i as a loop of ticks of length h uses them. Throws std::invalid_argument, with the joint and the
-/// value, if the bounds are invalid.
+/// Bounds of joint i for a loop of ticks of length h. Throws std::invalid_argument, with the joint and the value, if
+/// the bounds are invalid.
 ///
 /// If the joint has an envelope, the ends of the range become the positions at which the envelope is zero. If the joint
-/// cannot brake along the envelope, a lower envelope with the same zero and the same slope there replaces the envelope.
+/// cannot brake along the envelope, the envelope is replaced by a lower envelope with the same zero and the same slope
+/// at the zero.
 ///
 /// At velocity level, a missing bound on acceleration becomes the acceleration that changes the velocity from one bound
 /// to the other in a tick. A bound on velocity or acceleration is reduced to 1024 times the largest value that a tick
@@ -36,8 +37,8 @@ template <Level kLevel, typename Scalar>
   require(bounds.velocity_offset >= Scalar(0) && std::isfinite(bounds.velocity_offset), "limits.velocity_offset",
           bounds.velocity_offset, "finite and not negative");
 
-  // With A = 1024 V/h, the braking distance V²/2A is 1/2048 of the displacement V h of a tick, so
-  // that a larger bound has almost no effect.
+  // With A = 1024 V/h, the braking distance V²/2A is 1/2048 of the displacement V h of a tick, so that a larger bound
+  // has almost no effect.
   constexpr auto kPlenty = Scalar(1024);
   const Scalar most =
       std::ldexp(Scalar(1), std::numeric_limits<Scalar>::max_exponent * 3 / 8);  // Its square is finite.

@@ -31,8 +31,8 @@ struct VelocityEnvelope {
   /// Whether the envelope admits the whole stop from a velocity v ≥ 0 at a constant deceleration b.
   ///
   /// With e = 2 (r − q) at the end of the stop, v (v/d + 2c/d) ≤ 2 (r − q) is v² (1/b − 1/d) − 2 v c/d + e ≥ 0. This
-  /// holds for all velocities of the stop if it holds at the start of the stop and at the minimum of the left side,
-  /// v = (c/d)/(1/b − 1/d), if the stop passes this velocity.
+  /// inequality holds for all velocities of the stop under two conditions: it holds at the start of the stop, and at
+  /// the minimum of the left side, v = (c/d)/(1/b − 1/d), if the stop passes this velocity.
   [[nodiscard]] bool allows_stop(Scalar q, Scalar v, Scalar b) const noexcept {
     if (!(v > Scalar(0))) return q <= stop_position;
     const Scalar left = Scalar(2) * (stop_position - q) - v * v / b;  // e

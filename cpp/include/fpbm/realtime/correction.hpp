@@ -13,7 +13,8 @@ namespace fpbm {
 
 /// Corrects the reference of a loop before the scheme uses it. If the error exceeds options.error_bound, the target is
 /// moved toward the tip until the error equals error_bound, separately for the position and the orientation (Buss
-/// 2004). The integral of the error is added (docs/realtime.md, Integral of the error).
+/// 2004). The integral of the error, times integral_gain, is added to the acceleration of the reference, or to the
+/// velocity at velocity level (docs/realtime.md, Integral of the error).
 template <Level kLevel, typename Space, typename Scalar = double>
 class Correction {
  public:

@@ -7,16 +7,16 @@
 
 namespace fpbm {
 
-/// Fraction of a velocity field that the joints can follow. The fraction is below 1 if following the field would
-/// require accelerations above the joints' bounds. The joints would then oscillate. field: velocities of the scheme at
-/// q [rad/s].
+/// Fraction of a velocity field that the joints can follow. The fraction is below 1 if the whole field requires
+/// accelerations above the joints' bounds: joints that follow the whole field would oscillate. field: velocities of the
+/// scheme at q [rad/s].
 template <typename Loop, typename Target, int N, typename Scalar>
 [[nodiscard]] Scalar followable_fraction(Loop& loop, const Limits<Level::kVelocity, N, Scalar>& limits,
                                          const Target& reference, const Vector<N, Scalar>& q,
                                          const Vector<N, Scalar>& field) noexcept {
   const auto& bounds = limits.bounds();
-  // The change of the field along itself is the acceleration of joints that follow the field. At a fraction s of the
-  // field, the acceleration is s² times as large.
+  // The derivative of the field in the direction of the field is the acceleration of joints that follow the field. At a
+  // fraction s of the field, the acceleration is s² times as large.
   Scalar ahead = limits.tick();
   for (Eigen::Index i = 0; i < field.size(); ++i) {
     const Scalar displacement = std::abs(field(i)) * ahead;

@@ -16,9 +16,9 @@ class HeldLevel {
   using Point = typename Space::template Point<Scalar>;
 
   /// Replaces the targets of the first level by the targets in the first tick of the stop, with zero velocity and
-  /// acceleration. If a task was farther than kNear from its target in that tick, its target becomes its point in that
-  /// tick, so that a stop does not move the task to its target. tip: the current points. length: the robot's
-  /// characteristic length [m].
+  /// acceleration. If the distance of a task from its target exceeds kNear in the first tick, the point of the task in
+  /// this tick replaces the target: a stop does not move a task to a far target. tip: the current points. length: the
+  /// robot's characteristic length [m].
   void hold(TickReferences<Space, Scalar>& references, const Point& tip, Scalar length) noexcept {
     if (!holds_) begin(references.stages[0].x, tip, length);
     for (Reference<Space, Scalar>& stage : references.stages) {

@@ -97,11 +97,11 @@ class LimitedState {
   /// Rows of the guard at the start of the tick.
   [[nodiscard]] auto rows() noexcept { return guard_.rows(limits(), tick_.joints); }
 
-  /// Whether the limits or the rows do not admit the acceleration at the start of a tick, or damping is active there.
-  /// Then the tick has one acceleration, which is evaluated in its middle, and no RK4 step (docs/limits.md, Bounds on
-  /// jerk). The function sets `next` to the state after the tick, and leaves the kinematics of the middle in `loop`.
-  /// Therefore the longest ticks resolve the task twice instead of four times. reference: in the middle of the tick.
-  /// at_start: joint accelerations at the start [rad/s²].
+  /// Whether, at the start of a tick, damping is active, or the limits or the rows do not admit the acceleration. Then
+  /// the tick has one acceleration, which is evaluated in the middle of the tick, and no RK4 step (docs/limits.md,
+  /// Bounds on jerk). The function sets `next` to the state after the tick, and leaves the kinematics of the middle in
+  /// `loop`. Therefore the longest ticks resolve the task twice instead of four times. reference: in the middle of the
+  /// tick. at_start: joint accelerations at the start [rad/s²].
   template <typename Loop, typename Target, typename Rows>
   [[nodiscard]] bool evaluate_middle_if_limited(Loop& loop, const Target& reference, const Rows& rows,
                                                 JointVector at_start, JointState& next, Result& result) const noexcept {
@@ -114,8 +114,8 @@ class LimitedState {
     return true;
   }
 
-  /// Ends a tick: limits the desired motion, replaces it if the arm could not stop clear of shapes, and updates the
-  /// state, the result, and the detection of a stall.
+  /// Ends a tick: limits the desired motion, and updates the state, the result, and the detection of a stall. If the
+  /// arm could not stop clear of shapes after this motion, the stopping trajectory replaces the motion.
   ///
   /// next: state to which the desired motion leads. At velocity level, only next.q is read. field: velocities of the
   /// scheme at the start of the tick [rad/s], read at velocity level only. now: reference at the start, not corrected.
@@ -206,7 +206,7 @@ class LimitedState {
       }
     }
     if (!several && !one_acceleration) {
-      // Jacobian in the middle of the tick: joints that compensate for joints on their bounds then do not disturb the
+      // With the Jacobian in the middle of the tick, joints that compensate for saturated joints do not disturb the
       // tip.
       loop.arm.kinematics(tick_.middle_of(next.q), loop.kinematics);
     }

@@ -17,8 +17,8 @@
 
 namespace fpbm {
 
-/// Stops tasks on the lower levels of a stack that do not approach their targets, so that the robot stops. Otherwise,
-/// these tasks could oscillate or drift in the null space of the higher levels while limits slow them.
+/// Stops the tasks of lower levels that do not approach their targets. Otherwise, these tasks could oscillate or drift
+/// in the null space of the higher levels while limits slow them, and the robot would not stop.
 ///
 /// The largest error of each task in a window of stall_time is compared with the largest errors in earlier windows. A
 /// task makes progress if its error is below the errors of all earlier windows by 1/16. A task of a lower level stops

@@ -114,7 +114,7 @@ class MeasuredLimiter {
   /// keeps the envelopes of offset D (docs/realtime.md, Delay of measured states, Envelopes).
   [[nodiscard]] static Scalar offset(Scalar D, Scalar H) noexcept { return D + H * H / (Scalar(2) * (D - H)); }
 
-  /// Limits with the tick H and without bounds on jerk, which keep the envelopes of the given limits.
+  /// Limits with the tick H that keep the envelopes of the given limits, but have no bounds on jerk.
   [[nodiscard]] static JointLimits slower(const JointLimits& limits, Scalar H) {
     fpbm::JointLimits<N, Scalar> bounds = limits.bounds();
     for (Eigen::Index i = 0; i < bounds.lower.size(); ++i) {
@@ -130,7 +130,8 @@ class MeasuredLimiter {
       const Scalar d = std::min({joint.deceleration, joint.acceleration, Scalar(16) * range / (T * T)});
       joint.velocity_offset = std::isfinite(d) ? T * d : Scalar(0);
       joint.deceleration = d;
-      // The velocity of the envelope is −c at the end that Limits receives, and must be zero at the end of the range.
+      // At the end that Limits receives, the velocity of the envelope is −velocity_offset. At the end of the range,
+      // this velocity must be zero.
       const Scalar extension = std::isfinite(d) ? T * T * d / Scalar(2) : Scalar(0);
       joint.upper += extension - end;
       joint.lower -= extension - end;

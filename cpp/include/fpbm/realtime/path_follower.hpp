@@ -8,11 +8,12 @@
 
 namespace fpbm {
 
-/// Follows a path from a tip. The follower has a clock that can pause and resume. The tip stays on the path, and its
-/// velocity and acceleration do not jump.
+/// Follows a path from the position of a tip. The follower has a clock that can pause and resume. The reference stays
+/// on the path, and the clock does not cause jumps of its velocity and acceleration.
 ///
 /// The reference at the path time p = ∫ r dt is x(p), x′(p) r, x″(p) r² + x′(p) ṙ. After the end of the path, the
-/// reference is at rest there. The rate r of the clock changes to 0 or 1 along a cubic in time, which takes one ramp.
+/// reference is at rest there. The rate r of the clock changes to 0 or 1 along a cubic in time. The duration of the
+/// cubic is one ramp (argument of the constructor).
 ///
 /// If a call reverses a running transition, ṙ first decreases to zero at |r̈| = 6/ramp². The cubics leave enough range
 /// for this. If r already changes toward its new value so fast that the cubic would overshoot, a shorter cubic is used.
@@ -96,8 +97,8 @@ class PathFollower {
     if (target == target_) return;
     const auto [r, rd] = rate(elapsed_);
     slope_ = (target > target_ ? rd : -rd) * ramp_;
-    // The remaining range of r in the direction of its slope is always at least this. max() and min() correct round-off
-    // errors only.
+    // The remaining range of r in the direction of its slope is always at least least_gap. max() and min() correct
+    // round-off errors only.
     const Scalar least_gap = slope_ * slope_ / Scalar(12);
     gap_ = target > r ? target - r : r - target;
     if (slope_ < Scalar(0)) {
@@ -165,7 +166,8 @@ class PathFollower {
   Scalar tick_{0};        ///< Length of an equal tick [s].
   Scalar ticks_{0};       ///< Number of equal ticks.
 
-  // The transition, with time in ramps: gap |target_ − r|, its slope −d(gap)/dt, and durations.
+  // The transition since the last call of start_transition(), with time in ramps: gap |target_ − r|, its slope
+  // −d(gap)/dt, and durations.
   Scalar elapsed_;            ///< Time since the call [s].
   Scalar target_{1};          ///< Target of the rate.
   Scalar gap_{0};             ///< At the call.

@@ -21,9 +21,9 @@ namespace fpbm {
 /// in a straight line. Then the scheme continues.
 ///
 /// The tip of each recovery must be nearer to the target than the tip of the previous recovery, by a step of progress.
-/// Exception: one recovery if the target has returned. A constant target therefore causes at most kPostures + 1
-/// recoveries. A target that stays unreachable causes none if the arm has stalled nearer to the target than every
-/// remembered tip.
+/// If the target has returned, this condition does not apply to one recovery. Therefore, a constant target causes at
+/// most kPostures + 1 recoveries. If an arm with an unreachable target has stalled nearer to the target than every
+/// remembered tip, the target causes no recovery.
 template <typename Space, int N, typename Scalar = double>
 class Recovery {
  public:
@@ -31,7 +31,7 @@ class Recovery {
   using Point = typename Space::template Point<Scalar>;
   using Distance = TaskDistance<Space, Scalar>;
 
-  static constexpr int kPostures = 8;  ///< They need 1.3 kB for seven joints and a pose.
+  static constexpr int kPostures = 8;  ///< Remembered postures. For seven joints and a pose, the memory has 1.3 kB.
 
   /// patience: time without progress toward the posture after which a recovery ends [s]. dt: length of a tick [s].
   Recovery(const JointVector& q, Scalar patience, Scalar dt) noexcept : patience_(patience), dt_(dt), goal_(q) {}
@@ -67,10 +67,10 @@ class Recovery {
   /// Call after a tick that executes the whole task.
   void settle() noexcept { farthest_ = Scalar(0); }
 
-  /// Starts a recovery to the remembered posture whose tip is nearest to the target. error: distance of the arm's own
-  /// tip from the target. Returns false, without a recovery, if the remembered tip is not nearer to the target than the
-  /// arm's own tip and the tip of the last recovery, and the target has not returned or its return has already caused a
-  /// recovery.
+  /// Starts a recovery to the remembered posture whose tip is nearest to the target, and returns true, in two cases.
+  /// (1) The remembered tip is nearer to the target than the arm's own tip and the tip of the last recovery. (2) The
+  /// target has returned, and its return has not caused a recovery yet. Otherwise, returns false. error: distance of
+  /// the arm's own tip from the target.
   [[gnu::cold, gnu::noinline]] bool begin(const JointVector& q, const Point& target, Scalar error,
                                           Scalar length) noexcept {
     const auto [distance, best] = nearest(target, length);
@@ -124,7 +124,7 @@ class Recovery {
   }
 
  private:
-  // Not optimised. `fpbm_tests --gtest_filter='Recovery.brings*'` prints how many arms do not return with these values.
+  // These values are not tuned. `fpbm_tests --gtest_filter='Recovery.brings*'` prints how many arms do not return.
   static constexpr Scalar kNewJoint =
       Scalar(0.1);                                 ///< Change of a joint that may move the tip by kSpread [rad] or [m].
   static constexpr Scalar kSpread = Scalar(0.05);  ///< Smallest distance of two remembered tips, as TaskDistance.
@@ -185,7 +185,7 @@ class Recovery {
   Scalar farthest_ = Scalar(0);
   bool returned_ = false;              ///< Whether the return of this target has caused a recovery.
   Scalar start_distance_ = Scalar(0);  ///< Distance to the posture at the start of the recovery.
-  Scalar least_distance_ = Scalar(0);  ///< Smallest distance to the posture since then.
+  Scalar least_distance_ = Scalar(0);  ///< Smallest distance to the posture during the recovery.
   Scalar waited_ = Scalar(0);          ///< Time without progress [s].
   bool active_ = false;
 };

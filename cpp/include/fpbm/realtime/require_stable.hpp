@@ -33,7 +33,8 @@ void require_stable_gains(const NamedGains<Scalar>& gains, const TickOfGains<Sca
   const auto& [name1, k1, name2, k2] = gains;
   const Scalar h = tick.dt;
   const Scalar integral = tick.integral_gain;
-  // With time scaled by the share, the error decays more slowly by this factor.
+  // The gains share · k₁ and share² · k₂ (velocity level: share · k) decrease the decay rate of the error by the factor
+  // `share`, without another change of its motion.
   const auto stable = [&](Scalar share, Scalar ki) {
     if constexpr (kLevel == Level::kVelocity) {
       const Scalar x1 = share * gains.k2 * h;

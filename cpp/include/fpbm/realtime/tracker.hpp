@@ -16,8 +16,8 @@
 
 /// One tick of a control loop.
 ///
-/// After construction, nothing here allocates, throws, locks, does I/O or loops without a bound, for any input. The
-/// same inputs give the same bits. If no motion can be computed, the arm brakes.
+/// After construction, no function of a tracker allocates, throws, locks, does I/O or loops without a bound, for any
+/// input. The same inputs give the same bits. If no motion can be computed, the arm brakes.
 namespace fpbm {
 
 /// Moves an arm tick by tick with a scheme, within its joint limits and through singular postures, until the arm is at
@@ -234,8 +234,8 @@ class Tracker {
     return true;
   }
 
-  /// The guard: shapes to avoid, and their distances at the start of the last tick. Shapes of the world can be moved in
-  /// it.
+  /// The guard: shapes to avoid, and their distances at the start of the last tick. Move shapes of the world with the
+  /// functions of the guard.
   [[nodiscard]] Guard_& guard() noexcept { return limited_.guard(); }
   [[nodiscard]] const Guard_& guard() const noexcept { return limited_.guard(); }
 

@@ -5,12 +5,12 @@
 
 namespace fpbm {
 
-/// Path in the base frame that starts at the start of the tip, in two segments: the motion, then rest at the end of the
+/// Path in the base frame from the start position of the tip, in two segments: the motion, then rest at the end of the
 /// path.
 ///
-/// The reference may be discontinuous between the segments (for example xdd of the paper), so that each step of an
-/// integrator reads the reference of its own segment. The last sample is stored, since RK4 reads the reference in the
-/// middle of a step twice, and at the end of a step again at the start of the next step.
+/// The reference may be discontinuous between the segments (for example xdd of the paper). Therefore, each step of an
+/// integrator reads the reference of its own segment. RK4 reads the reference in the middle of a step twice, and the
+/// reference at the end of a step again at the start of the next step. Therefore, the last reference is stored.
 /// With lanes, many arms follow one path, each from its own tip.
 template <typename Path, typename Scalar = typename Path::Scalar>
 class AnchoredPath {
@@ -26,8 +26,8 @@ class AnchoredPath {
   }
   AnchoredPath(const Path&& path, const Point& anchor) = delete;
 
-  /// Reference at t [s] of the motion, in a step of an integrator that starts at `since`. t is limited to T, which
-  /// round-off may exceed.
+  /// Reference at t [s] of the motion, in a step of an integrator that starts at `since`. If t exceeds the duration by
+  /// round-off, t is limited to the duration.
   [[nodiscard]] const Reference<Space, Scalar>& motion(Time t, [[maybe_unused]] Time since) noexcept {
     bool known = t == time_;
     if constexpr (kHasPieces<Path>) known = known && since == since_;

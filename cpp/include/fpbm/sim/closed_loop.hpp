@@ -49,8 +49,8 @@ struct ClosedLoop {
     }
   }
 
-  /// Second part of evaluate(): dX/dt at the X of update(). sigma, unless null, is set to a lower bound on σ_min(J) of
-  /// the first level if the scheme provides this bound.
+  /// Second part of evaluate(): dX/dt at the X of update(). sigma: null, or the address for a lower bound on σ_min(J)
+  /// of the first level. If the scheme does not provide this bound, the value at this address does not change.
   [[nodiscard]] Status resolve(const Reference<Space, Scalar>& reference, X& dx, Scalar* sigma = nullptr) noexcept {
     Status status;
     if constexpr (kSecondOrder) {

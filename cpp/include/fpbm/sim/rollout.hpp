@@ -37,7 +37,8 @@ template <typename Recorder, typename Sample>
   }
 }
 
-/// Integrates an arm with a scheme along a path by RK4 at fixed steps, then for a time at rest at the end of the path.
+/// Integrates an arm with a scheme by RK4 at fixed steps: along a path, then for the time `hold` of the grid with the
+/// reference at rest at the end of the path.
 ///
 /// The path is a displacement from the start of the tip. If damping at a singular posture prevents the tip from
 /// following its path, the motion stops with kTaskLost, whereas a Tracker continues. If the discretisation error of the

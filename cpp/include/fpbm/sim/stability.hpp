@@ -9,9 +9,9 @@
 /// acceleration level; x₁ = kh, x₃ = kᵢh² at velocity level.
 namespace fpbm {
 
-/// Whether no root of (z−1)³ + a(z−1)² + b(z−1) + c is outside the unit circle, by Routh's criterion for w, where z =
-/// (1+w)/(1−w). Powers of z−1 keep their digits if the gains are small. round_off: where a sum is near zero, its
-/// error is at most 12 ε (|a| + |b| + |c|). The factor 64 also covers the errors of a, b and c.
+/// Whether no root of (z−1)³ + a(z−1)² + b(z−1) + c is outside the unit circle, by Routh's criterion for the polynomial
+/// in w with z = (1+w)/(1−w). For small gains, the coefficients of powers of z−1 have no cancellation. round_off: near
+/// zero, the error of a sum is at most 12 ε (|a| + |b| + |c|). The factor 64 also covers the errors of a, b and c.
 template <typename Scalar>
 [[nodiscard]] bool is_in_unit_circle(Scalar a, Scalar b, Scalar c) noexcept {
   const Scalar w3 = Scalar(8) - Scalar(4) * a + Scalar(2) * b - c;
@@ -72,16 +72,16 @@ template <typename Scalar>
                            feedback.position_gain + integral / Scalar(2), integral);
 }
 
-/// Whether a tick damps the errors of the null space if the acceleration a is computed in the middle of the tick, up to
-/// which the acceleration a' of the previous tick continues (LimitedState::update_middle): a = −x₁(ė + a'/2) − x₂(e +
-/// ė/2 + a'/8).
+/// Whether a tick damps the errors of the null space if the acceleration a is computed in the middle of the tick. Up to
+/// the middle, the acceleration a' of the previous tick continues (TickState::update_middle): a = −x₁(ė + a'/2) − x₂(e
+/// + ė/2 + a'/8).
 template <typename Scalar>
 [[nodiscard]] bool is_stable_acceleration_of_middle(Scalar x1, Scalar x2) noexcept {
   return is_in_unit_circle(Scalar(1) + Scalar(1.5) * x1 + Scalar(1.125) * x2, x1 + Scalar(2) * x2, x2);
 }
 
-/// Whether a tick damps the errors at velocity level if the velocity v is computed in the middle of the tick, up to
-/// which the velocity v' of the previous tick continues: v = −x₁(e + v'/2) − x₃I.
+/// Whether a tick damps the errors at velocity level if the velocity v is computed in the middle of the tick. Up to the
+/// middle, the velocity v' of the previous tick continues: v = −x₁(e + v'/2) − x₃I.
 template <typename Scalar>
 [[nodiscard]] bool is_stable_velocity_of_middle(Scalar x1, Scalar x3 = Scalar(0)) noexcept {
   return is_in_unit_circle(Scalar(1) + Scalar(1.5) * x1, x1 + x3, x3);

@@ -8,12 +8,12 @@
 
 namespace fpbm {
 
-/// Sample times of a rollout: t_i = i dt over the motion, then over the time at rest at its end (hold).
+/// Sample times of a rollout: t_i = i dt, over the motion and the subsequent time at rest (hold).
 template <typename Scalar = double>
 class TimeGrid {
  public:
   /// duration, dt and hold in seconds. Throws std::invalid_argument unless dt is positive, finite, and divides both
-  /// duration and hold (up to 1e-9). The message has the nearest dt that does.
+  /// duration and hold (up to 1e-9). The message contains the nearest valid dt.
   TimeGrid(Scalar duration, Scalar dt, Scalar hold = Scalar(0)) : duration_(duration) {
     validation::require_positive("duration", duration);
     validation::require_positive("dt", dt);

@@ -49,9 +49,9 @@ class ErrorWatch {
   }
 
  private:
-  /// Growth of the error of a tip that follows, as a fraction of the displacement of the reference and of the error. If
-  /// the target is unreachable, the fraction is 1. `fpbm_tests --gtest_filter='*Failure*:StepLength*'` passes with 0.01
-  /// to 0.1, and fails with 0.3.
+  /// Largest growth of the error while the tip follows its reference, as a fraction of the displacement of the
+  /// reference and of the error. If the target is unreachable, the fraction is 1. `fpbm_tests
+  /// --gtest_filter='*Failure*:StepLength*'` passes with 0.01 to 0.1, and fails with 0.3.
   static constexpr auto kTolerance = static_cast<Number<Scalar>>(0.1);
   /// Six times the truncation error θ⁵/120 of RK4 for a rotation by θ. The same tests pass with 0 to 0.1, and fail
   /// with 1.
@@ -67,9 +67,9 @@ class ErrorWatch {
 ///
 /// The estimate needs no additional evaluations. made_ is the growth of the tip error in excess of its rate, summed
 /// over all steps; at acceleration level, plus the integral of made_rate_, the excess growth of the velocity error.
-/// Without feedback, made_ is an upper bound on the discretisation error. Feedback decreases the error, so that the tip
-/// error is an upper bound too, and the smaller of both bounds is used. If a wrong start velocity causes a larger
-/// error, a discretisation error may be missed.
+/// Without feedback, made_ is an upper bound on the discretisation error. With feedback, the tip error is another upper
+/// bound. The smaller bound is used. If a wrong start velocity causes a larger error, a discretisation error may be
+/// missed.
 template <typename Space, int N, typename Scalar = double>
 class TaskWatch {
  public:
@@ -134,8 +134,8 @@ class TaskWatch {
   /// Largest lag of a damped tip, in steps of the reference: 1 for a tip that stops, and the tolerance of ErrorWatch.
   static constexpr auto kDampedSteps = static_cast<Number<Scalar>>(1.1);
 
-  /// Smallest significant tip error, relative to the largest lever arm of a joint: 0.1 mm for a lever arm of 1 m. A
-  /// definition (rollout()).
+  /// Smallest significant tip error, relative to the largest lever arm of a joint: 0.1 mm for a lever arm of 1 m. This
+  /// value defines the status kCoarse (rollout()).
   static constexpr auto kAccuracy = static_cast<Number<Scalar>>(1e-4);
 
   Mask<Scalar> accurate_ = Mask<Scalar>(true);
