@@ -243,8 +243,8 @@ namespace fpbm::presets::capsules {{
 {functions}
 }}  // namespace fpbm::presets::capsules
 
-/// Links of the presets whose capsules may overlap although the links never collide within the joint bounds: pass them
-/// as the last argument of Clearance. These links are always at least 5 mm apart.
+/// Links of the presets whose capsules may overlap although the links never collide within the joint bounds, for the
+/// last argument of Clearance. These links are always at least 5 mm apart.
 namespace fpbm::presets::never_collide {{
 
 using LinkNames = std::pair<std::string, std::string>;

@@ -29,7 +29,7 @@ class Clearance(Data):
     """Self-collision and obstacles that an arm or a Robot avoids, with a margin.
 
     Two kinds of pairs are checked: capsules of two links that are not adjacent, also on different branches of a Robot;
-    and each capsule of a moving link with each obstacle. Pairs that overlap in every posture and allowed pairs are not
+    and each capsule of a moving link with each obstacle. Pairs that are always too close and allowed pairs are not
     checked. Shapes without a name get a default: 'link_3' for a capsule, 'obstacle_1' for an obstacle.
 
     Raises ParameterError if a shape has a wrong type, an obstacle is not in the base frame, two obstacles share a name,

@@ -25,7 +25,7 @@ class HeldJoints {
   /// Smallest length of the independent part of a joint's row of Z, for a joint that is held in addition: about √ε. The
   /// independent part is orthogonal to the rows of the held joints. A shorter part is mostly round-off error. A slow
   /// joint may be held with a shorter part, if the round-off error of the direction of the part, ε/part, times the
-  /// motion, rate/part, is less than 1. Range: 1e-10 to 1e-6.
+  /// motion, rate/part, is at most 1. Range: 1e-10 to 1e-6.
   static constexpr Scalar kIndependent = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-8) : Scalar(3e-4);
 
   /// A joint with a shorter independent part does not move in the null space: this part is the round-off error of a

@@ -19,9 +19,9 @@ namespace fpbm {
 ///
 /// At velocity level, a missing bound on acceleration becomes the acceleration that changes the velocity from one bound
 /// to the other in a tick. A bound on velocity or acceleration is reduced to 1024 times the largest value that a tick
-/// can use, because squares of DBL_MAX overflow. In a tick, no joint moves farther than its range, or changes its
-/// velocity by more than twice the velocity bound. A bound on jerk that admits the change from one acceleration bound
-/// to the other in a tick is removed.
+/// can use, and to a number whose square is finite, because squares of DBL_MAX overflow. In a tick, no joint moves
+/// farther than its range, or changes its velocity by more than twice the velocity bound. A bound on jerk that admits
+/// the change from one acceleration bound to the other in a tick is removed.
 template <Level kLevel, typename Scalar>
 [[nodiscard]] JointBounds<Scalar> usable_bounds(Eigen::Index i, JointBounds<Scalar> bounds, Scalar tick) {
   const auto require = [i](bool good, const char* name, Scalar value, const char* what) {
