@@ -29,8 +29,8 @@ class Clearance(Data):
     """Self-collision and obstacles that an arm or a Robot avoids, with a margin.
 
     Two kinds of pairs are checked: capsules of two links that are not adjacent, also on different branches of a Robot;
-    and each capsule of a moving link with each obstacle. Pairs that are always too close and allowed pairs are not
-    checked. Shapes without a name get a default: 'link_3' for a capsule, 'obstacle_1' for an obstacle.
+    and each capsule of a moving link with each obstacle. Allowed pairs and the pairs of
+    excluded_pairs() are not checked. Shapes without a name get a default: 'link_3' for a capsule, 'obstacle_1' for an obstacle.
 
     Raises ParameterError if a shape has a wrong type, an obstacle is not in the base frame, two obstacles share a name,
     or `allowed` contains a name that no shape has.
@@ -206,7 +206,7 @@ class Clearance(Data):
         return self._of(arm).pairs()
 
     def excluded_pairs(self, arm: Arm | Robot) -> list[tuple[str, str]]:
-        """Names of the pairs that are not checked because they overlap in every posture."""
+        """Names of the pairs that are not checked because they are closer than the margin in all of 256 postures."""
         return self._of(arm).excluded_pairs()
 
     def _of(self, arm: Arm | Robot) -> CoreClearance:
