@@ -29,8 +29,8 @@ class Clearance(Data):
     """Self-collision and obstacles that an arm or a Robot avoids, with a margin.
 
     Two kinds of pairs are checked: capsules of two links that are not adjacent, also on different branches of a Robot;
-    and each capsule of a moving link with each obstacle. Allowed pairs and the pairs of
-    excluded_pairs() are not checked. Shapes without a name get a default: 'link_3' for a capsule, 'obstacle_1' for an obstacle.
+    and each capsule of a moving link with each obstacle. Allowed pairs and the pairs of excluded_pairs() are not
+    checked. Shapes without a name get a default: 'link_3' for a capsule, 'obstacle_1' for an obstacle.
 
     Raises ParameterError if a shape has a wrong type, an obstacle is not in the base frame, two obstacles share a name,
     or `allowed` contains a name that no shape has.
