@@ -22,7 +22,7 @@ OLD_INSTRUCTIONS = {
 
 
 def instructions(results: Results, job: str) -> float | None:
-    """Mean instructions per call of a job; None if the compiler is not the compiler of OLD_INSTRUCTIONS."""
+    """Mean instructions per call of a job. None without a count by the compiler of OLD_INSTRUCTIONS."""
     same = str(results.values["built_with"]["compiler"]).startswith("g++ 12.")
     return results.values.get("instructions", {}).get(job) if same else None
 

@@ -134,7 +134,7 @@ def blocks(times: list[float]) -> Array:
 
 
 def run(robot: Panda, solver: Solver) -> tuple[list[dict[str, Any]], list[float]]:
-    """Results of another library, and of this library at both levels. Ratios of the other times to this library's."""
+    """Results of another library and of this library at both levels, and the ratios of times (other / this library)."""
     path = Path(robot.arm)
     trackers = [ours(robot, "velocity"), ours(robot, "acceleration")]
     motions = [Motion(robot) for _ in range(3)]

@@ -67,7 +67,7 @@ CASES = {
 
 
 def kinds() -> list[str]:
-    """Types of lanes that this processor and this build of the package have, after "none"."""
+    """A list with "none", then the types of lanes that this processor and this build of the package have."""
     return ["none", *(kind for kind in _core.processor_kinds()[::-1] if find_spec(f"fpbm_cpp._lanes_{kind}"))]
 
 
