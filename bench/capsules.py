@@ -1,11 +1,15 @@
-"""How much larger than their collision geometry the capsules of arms are: `python bench/capsules.py [per_link]`.
+"""Compares the capsules of arms with their collision geometry: `python bench/capsules.py [per_link]`.
 
-Needs example-robot-data and the extra `clearance`; of the presets, those whose meshes are found, which
-tools/preset_capsules.py names. For each arm, over all links with collision geometry: the pairs of capsules that are
-kept apart; the volume of the links' capsules (of their union, by sampling) over the volume of their convex hulls; how
-far the capsules reach beyond the hulls, max over directions u of h_capsule(u) - h_hull(u), of the median and of the
-worst link; and, to compare, the volume of capsules about trimesh's minimum cylinders. Least for a cube is 2.64 times
-its volume.
+Requires example-robot-data and the extra `clearance`. Presets without meshes are skipped (tools/preset_capsules.py
+lists the sources of the meshes). For each arm, over all links with collision geometry, prints:
+
+- the number of capsule pairs that the clearance keeps apart,
+- the ratio of the volume of the capsules (of their union, by sampling) to the volume of the convex hulls,
+- the ratio of the volume of capsules around trimesh's minimum cylinders to the volume of the convex hulls,
+- the distance of the capsules beyond the hulls, for the median and the worst link: the maximum over directions u of
+  h_capsule(u) - h_hull(u), with support functions h.
+
+For a cube, the smallest possible ratio of the volumes is 2.64.
 """
 
 from __future__ import annotations

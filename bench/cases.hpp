@@ -126,8 +126,8 @@ struct Input {
 };
 
 /// Random states around a bent posture, within ±scatter [rad], that satisfy `wanted`, and references near the tip. The
-/// same in every run. They are few enough to stay in the first-level cache, and enough that no computation can be
-/// hoisted.
+/// states are the same in every run. They fit into the first-level cache, and are too many for hoisting computations
+/// out of the loop.
 template <typename Space, typename Arm, typename Wanted, int N = Arm::kDof>
 auto inputs(const Arm& arm, const fpbm::Vector<N>& bent, double scatter, Wanted wanted) {
   std::mt19937 generator(1);

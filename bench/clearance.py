@@ -1,4 +1,4 @@
-"""Whether arms hit anything: random motions, beside Pink and Mink, and past a moving post in MuJoCo.
+"""Contacts of arms with a clearance: in random motions, compared with Pink and Mink, and with a moving post in MuJoCo.
 
 python bench/clearance.py motions [--motions 10000 --minutes 12]
 python bench/clearance.py peers

@@ -1,4 +1,4 @@
-"""Random motions straight through table, shelf and post, and the contacts: `python bench/clearance.py motions`."""
+"""Contacts in random motions with paths through a table, a shelf and a post: `python bench/clearance.py motions`."""
 
 from __future__ import annotations
 
@@ -15,37 +15,37 @@ from clearance_robots import NAMES, UP, Array, Check, Robot, robot
 import fpbm_cpp as fp
 from fpbm_cpp.obstacle import Obstacle
 
-STRIDE = 10  # Samples from one check of the meshes to the next.
-FREE = 20  # Each so many, a motion is also made without a clearance.
-START = 0.001  # A start is clear by this much more than the margin [m].
-NEAR = 0.02  # A motion within this much of the margin has met something to keep clear of [m].
+STRIDE = 10  # Number of samples from one check of the meshes to the next.
+FREE = 20  # One of FREE motions is also executed without a clearance.
+START = 0.001  # Smallest distance of a start posture beyond the margin [m].
+NEAR = 0.02  # If the smallest distance of a motion beyond the margin is below NEAR [m], the motion counts as near.
 CHUNK = 25
 BOUNDS = ("position", "velocity", "acceleration", "jerk")
 
-ROBOTS: dict[str, Robot] = {}  # Made before workers are forked, which share them.
+ROBOTS: dict[str, Robot] = {}  # Filled before the workers are forked, so that they share the robots.
 
 
 class Motion(NamedTuple):
     ticks: int
     duration: float
     status: str
-    distance: float  # The least of capsules, beyond the margin [m].
-    excess: tuple[float, ...]  # Excess over the joints' bounds, as a share of each bound; of positions [rad].
-    checks: int  # Of the meshes,
-    contacts: int  # how many met,
-    apart: float  # and how far apart they were where the capsules were nearest [m].
-    free_contacts: int | None  # The same of the motion without a clearance.
+    distance: float  # Smallest distance of capsules beyond the margin [m].
+    excess: tuple[float, ...]  # Excess over the joint bounds: of positions [rad], otherwise relative to the bound.
+    checks: int  # Number of checks of the meshes.
+    contacts: int  # Number of checks with a contact.
+    apart: float  # Distance of the meshes in the posture with the smallest distance of capsules [m].
+    free_contacts: int | None  # Number of checks with a contact in the motion without a clearance.
 
 
 def turned(angle: float, place: Array) -> Array:
-    """A frame turned about z."""
+    """A frame that is rotated about z."""
     pose = np.eye(4)
     pose[:3, :3], pose[:3, 3] = fp.rotation([0, 0, angle]), place
     return pose
 
 
 def world(rng: np.random.Generator, reach: float) -> list[Obstacle]:
-    """Floor, table, shelf and post around an arm, at random."""
+    """A floor, and a table, a shelf and a post at random places around an arm."""
 
     def around(low: float, high: float) -> tuple[float, Array]:
         angle = rng.uniform(-np.pi, np.pi)
@@ -81,7 +81,7 @@ def schemes(n: int, rng: np.random.Generator) -> fp.Scheme:
 
 
 def aims(rng: np.random.Generator, obstacles: list[Obstacle], tip: Array) -> Iterator[Array]:
-    """Points behind things, seen from the tip; and behind the arm's own base."""
+    """Displacements of the tip to points behind obstacles or behind the arm's own base."""
     for _ in range(rng.integers(1, 4)):
         chosen = rng.integers(len(obstacles) + 1)
         if chosen == len(obstacles):
@@ -98,7 +98,7 @@ def aims(rng: np.random.Generator, obstacles: list[Obstacle], tip: Array) -> Ite
 
 
 def start(rng: np.random.Generator, arm: fp.SerialArm, limits: fp.JointLimits, clearance: fp.Clearance) -> Array | None:
-    """A posture that is clear of all."""
+    """A random posture that is farther than START from the margin of all shapes; None if none is found."""
     low, high = (np.clip(bound, -2.8, 2.8) for bound in (limits.lower, limits.upper))
     for q in rng.uniform(low, high, (3000, arm.dof)):
         nearest = clearance.nearest(arm, q)
@@ -108,7 +108,7 @@ def start(rng: np.random.Generator, arm: fp.SerialArm, limits: fp.JointLimits, c
 
 
 def excess(run: fp.Run, limits: fp.JointLimits) -> tuple[float, ...]:
-    """How far the motion leaves the joints' bounds, by differences of positions and velocities."""
+    """Excess of a motion over the joint bounds, by differences of positions and velocities."""
     h, still = run.options["dt"], np.zeros((1, run.q.shape[1]))
     velocity = np.vstack([run.qd, np.diff(run.q, axis=0) / h])
     acceleration = np.vstack([still, np.diff(run.qd, axis=0) / h])
@@ -123,7 +123,7 @@ def contacts(check: Check, run: fp.Run) -> int:
 
 
 def motion(name: str, number: int) -> Motion | None:
-    """One of the motions; None if no start is found."""
+    """The motion of an arm with a number; None if no start posture is found."""
     made = ROBOTS[name]
     rng = np.random.default_rng([17, NAMES.index(name), number])
     reach = float(sum(np.linalg.norm(joint.placement[:3, 3]) for joint in made.arm.joints[1:]))
@@ -177,7 +177,7 @@ COLUMNS: dict[str, Callable[[list[Motion]], str]] = {
 
 
 def report(done: dict[str, list[Motion]]) -> list[str]:
-    """The table, arms side by side."""
+    """The table of results, with a column for each arm."""
     every = {**done, "all": [each for of in done.values() for each in of]}
     lines = ["| | " + " | ".join(every) + " |", "|---|" + "---:|" * len(every)]
     lines += [f"| {head} | " + " | ".join(cell(of) for of in every.values()) + " |" for head, cell in COLUMNS.items()]
@@ -186,7 +186,7 @@ def report(done: dict[str, list[Motion]]) -> list[str]:
 
 
 def run(motions: int, workers: int, minutes: float) -> Iterator[str]:
-    """Makes motions, a share for each arm, one after another, until all are made or the time is over."""
+    """Executes the same number of motions for each arm, until all motions are complete or the time is over."""
     for name in NAMES:
         ROBOTS[name] = robot(name)
     each = -(-motions // len(NAMES))

@@ -1,14 +1,14 @@
 """The same targets for fpbm_cpp, Pink and Mink, on one Panda: `python bench/clearance.py peers`.
 
-One set of capsules on its links, taken from its URDF, one set of pairs, one margin, the joints' ends and velocities the
-same, 1000 ticks a second. In addition, fpbm_cpp keeps bounds on acceleration and jerk. The motions of all libraries are
-measured in the same manner, by Coal on the capsules.
+All libraries have the same capsules (from the URDF), pairs, margin, and bounds on joint positions and velocities, at
+1000 ticks per second. In addition, fpbm_cpp keeps bounds on acceleration and jerk. Coal measures the distances of the
+capsules in the motions of all libraries.
 
-Pink and Mink have the gains of their own examples: Pink's of kukas_self_collision.py (cost of the frame 50, of the
-posture 1e-3, barrier's gain 20, safe displacement 1), Mink's of arm_ur5e.py (cost 1, Levenberg-Marquardt damping 1,
-damping 1e-3, limit's gain 0.85, which includes shapes within twice the margin). In both, the frame's gain of 1 requires
-the target within a tick; rows with a gain of 0.02 have the gain of fpbm_cpp, 20/s. A tick without an answer holds the
-arm.
+Pink and Mink have the gains of their own examples. Pink: kukas_self_collision.py, with the cost 50 of the frame, the
+cost 1e-3 of the posture, the gain 20 of the barrier, and the gain 1 of the safe displacement. Mink: arm_ur5e.py, with
+the cost 1, Levenberg-Marquardt damping 1, damping 1e-3, and the gain 0.85 of the limit, which includes shapes within
+twice the margin. In both libraries, the gain 1 of the frame requires the target within a tick. Rows with a gain of 0.02
+have the gain of fpbm_cpp, 20/s. In a tick without a solution, the arm does not move.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class Motion(NamedTuple):
     time: float  # Median processor time of a tick [µs].
 
 
-# One tick: from x, xd and xdd to the next posture, and whether the tick succeeded.
+# A function of x, xd and xdd for one tick. Returns the next posture, and whether the tick succeeded.
 Step = Callable[[Array, Array, Array], tuple[Array, bool]]
 
 
@@ -94,7 +94,7 @@ def ours(scene: Scene, scheme: fp.Scheme, limits: fp.JointLimits, clearance: fp.
 
 
 def moved(step: Step, arm: fp.SerialArm, scenario: Scenario) -> tuple[Motion, Array]:
-    """The motion, and the tip's reference."""
+    """The motion of a solver, and the reference positions of the tip."""
     start = arm.forward(READY)[:3, 3]
     ticks = round((scenario.path.duration + scenario.hold) / DT)
     q, references, times, failed = [READY], [start], [], 0
@@ -138,7 +138,7 @@ HEADS = [
 
 
 def solvers(scene: Scene, made: Robot, clearance: fp.Clearance) -> dict[str, Callable[[], Step]]:
-    """Each is made when it is its turn."""
+    """Functions that construct the solvers. Each solver is constructed immediately before its motion."""
     ones = np.ones(scene.arm.dof)
     fpbm = fp.FPBM(0.6, ones, 2 * K, K * K, null_damping=2.0)
     acceleration = made.limits.acceleration

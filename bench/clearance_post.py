@@ -1,9 +1,9 @@
-"""A post that crosses a Panda's work space in MuJoCo, which counts contacts: `python bench/clearance.py post`.
+"""Contacts with a post that crosses the workspace of a Panda in MuJoCo: `python bench/clearance.py post`.
 
-The arm holds its tip where it is. It is led by the tracker's positions and velocities, a thousand times a second, by a
-computed torque. The post is vertical, moves straight at one speed through a point of the forearm or the hand, and
-nothing stops it. The tracker is told where it is and how fast, at each tick. Posts whose path is nearer to the arm's
-first axis than COLUMN are left out: the two links there cannot move away.
+The target of the tip is constant. A computed-torque controller follows the positions and velocities of the tracker at
+1 kHz. The post is vertical, and moves in a straight line at constant velocity through a point of the forearm or the
+hand. No contact stops the post. The tracker receives the position and the velocity of the post in each tick. Posts
+whose path is nearer to the first axis of the arm than COLUMN are omitted: the two links on this axis cannot move away.
 """
 
 from __future__ import annotations
@@ -30,20 +30,20 @@ COLUMN = 0.25  # [m]
 FAR = 0.95  # Distance of a post's start and end from its nearest point to the axis [m].
 STIFFNESS, DAMPING = 2500.0, 100.0  # Feedback gains on position [1/s²] and velocity [1/s].
 
-MADE: dict[str, Any] = {}  # Filled before workers are forked, which share it.
+MADE: dict[str, Any] = {}  # Filled before the workers are forked, so that they share the entries.
 
 
 class Crossing(NamedTuple):
     speed: float
-    touched: int  # Ticks with a contact of the post and the arm.
-    deepest: float  # Smallest distance that MuJoCo measured in these [m], 0 without any.
-    distance: float  # Least distance of the tracker's capsules from one another and from the post [m].
+    touched: int  # Number of ticks with a contact of the post and the arm.
+    deepest: float  # Smallest distance in the contacts by MuJoCo [m]; 0 without a contact.
+    distance: float  # Smallest distance between the capsules of the tracker, or from them to the post [m].
     lag: float  # Largest lag of the arm behind the tracker [rad].
     error: float  # Error of the tip at the end [m].
 
 
 def model_of(name: str, capsule_radius: float) -> Any:
-    """The arm by its URDF in MuJoCo, whose links meet the post and not one another."""
+    """MuJoCo's model of an arm from its URDF file. Links have contacts with the post, but not with each other."""
     import mujoco
 
     with tempfile.TemporaryDirectory() as folder, flat_urdf(name) as urdf:
@@ -69,7 +69,7 @@ def model_of(name: str, capsule_radius: float) -> Any:
 
 
 def ways(number: int) -> tuple[Array, Array]:
-    """Where a post is nearest to the first axis, and its direction: through a point of the arm, at random."""
+    """A random path of a post through the arm: the point nearest to the first axis, and the direction of the path."""
     arm = MADE["robot"].arm
     rng = np.random.default_rng([23, number])
     elbow, wrist = np.array([0.0, 0.0, 0.6]), arm.forward(READY)[:3, 3]

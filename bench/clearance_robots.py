@@ -1,4 +1,4 @@
-"""Arms with their clearances, and the same arms' collision meshes for Coal, for bench/clearance.py."""
+"""Arms with their clearances, and the collision meshes of these arms for Coal, for bench/clearance.py."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from fpbm_cpp.obstacle import Obstacle
 Array = NDArray[np.float64]
 
 MARGIN = 0.01
-JERK = 500.0  # Times the acceleration, if a maker gives no jerk; the ratio is Franka's.
+JERK = 500.0  # Ratio of the bounds on jerk and acceleration, if the manufacturer gives no jerk [1/s]. From Franka.
 UP = np.array([0.0, 0.0, 1.0])
 NAMES = ("panda", "iiwa14", "gen3", "ur5e")
 
@@ -35,13 +35,13 @@ class Robot(NamedTuple):
 
 
 class Meshes:
-    """The links' collision meshes and obstacles in Coal, placed by Pinocchio, which no part of fpbm_cpp has touched."""
+    """Collision meshes of the links, and obstacles, in Coal. Pinocchio computes the placements, without fpbm_cpp."""
 
     def __init__(self, urdf: Path, tip: str, arm: fp.SerialArm, clearance: fp.Clearance) -> None:
         import pinocchio as pin
 
         self.pin = pin
-        # For a continuous joint, Pinocchio's position is a point on a circle: here it is an angle.
+        # Pinocchio represents the position of a continuous joint by a point on a circle. flat_urdf() has only angles.
         model = pin.buildModelFromUrdf(str(urdf))
         held = [i for i in range(1, model.njoints) if model.names[i] not in arm.joint_names]
         geometry = pin.buildGeomFromUrdf(model, str(urdf), pin.GeometryType.COLLISION)
@@ -100,37 +100,37 @@ class Geometry(NamedTuple):
     state: Any
 
     def meets(self, q: Array) -> bool:
-        """Whether any two links, or a link and an obstacle, meet."""
+        """Whether two links, or a link and an obstacle, are in contact."""
         return bool(self.pin.computeCollisions(self.model, self.data, self.geometry, self.state, q, True))
 
     def distance(self, q: Array) -> float:
-        """The least distance of two [m]."""
+        """Smallest distance of all pairs [m]."""
         self.pin.computeDistances(self.model, self.data, self.geometry, self.state, q)
         return min(float(each.min_distance) for each in self.state.distanceResults)
 
 
 class Check(NamedTuple):
-    """Meshes, and their convex hulls: where these are apart, so are those, which are slower to check."""
+    """Meshes and their convex hulls. If the hulls are apart, the meshes are apart too. Hulls are faster to check."""
 
     hulls: Geometry
     meshes: Geometry
 
     def meets(self, q: Array) -> bool:
-        """Whether any two meshes, or a mesh and an obstacle, meet."""
+        """Whether two meshes, or a mesh and an obstacle, are in contact."""
         return self.hulls.meets(q) and self.meshes.meets(q)
 
     def distance(self, q: Array) -> float:
-        """The least distance of two meshes [m]."""
+        """Smallest distance of all pairs of meshes [m]."""
         return self.meshes.distance(q)
 
 
 def coal_shape(obstacle: Obstacle) -> tuple[Any, Array]:
-    """Its geometry in Coal, and the frame of that."""
+    """The geometry of an obstacle in Coal, and the pose of this geometry."""
     import coal
 
     frame = np.eye(4)
     if isinstance(obstacle, fp.HalfSpace):
-        # As far as the arm reaches, a thick plate is the same: Coal tries all triangles of a mesh against a half-space.
+        # Within the workspace, a thick plate is equivalent. For a half-space, Coal would test all triangles of a mesh.
         half = np.array([2.0, 2.0, 0.5])
         middle = capsule_frame(fp.Capsule(0, [0, 0, 0], obstacle.normal, 0.0))[0]
         middle[:3, 3] = (obstacle.offset - half[2]) * middle[:3, 2]
@@ -142,7 +142,7 @@ def coal_shape(obstacle: Obstacle) -> tuple[Any, Array]:
 
 
 def capsule_frame(capsule: fp.Capsule) -> tuple[Array, float]:
-    """The frame at its middle whose z axis is along it, and its segment's length."""
+    """The frame at the middle of a capsule with z along its segment, and the length of the segment."""
     way = capsule.b - capsule.a
     length = float(np.linalg.norm(way))
     z = way / length if length > 0 else np.array([0.0, 0.0, 1.0])
@@ -155,7 +155,7 @@ def capsule_frame(capsule: fp.Capsule) -> tuple[Array, float]:
 
 
 def presets() -> Any:
-    """The script that knows where robots' files are."""
+    """The script with the locations of the robot files."""
     folder = str(Path(__file__).parents[1] / "tools")
     if folder not in sys.path:
         sys.path.append(folder)
@@ -164,7 +164,7 @@ def presets() -> Any:
 
 @contextmanager
 def flat_urdf(name: str) -> Iterator[Path]:
-    """Its URDF file with the meshes' whole paths, and joints without ends as others."""
+    """The URDF file of a preset, with absolute paths of the meshes, and with continuous joints as revolute joints."""
     known = presets()
     with known.urdf_of(name) as given, tempfile.TemporaryDirectory() as folder:
 
@@ -178,7 +178,7 @@ def flat_urdf(name: str) -> Iterator[Path]:
 
 
 def robot(name: str) -> Robot:
-    """A robot by its URDF file, with the preset's limits."""
+    """A robot from its URDF file, with the limits of the preset."""
     known = presets()
     source = known.ARMS[name]
     with known.urdf_of(name) as given, flat_urdf(name) as flat:

@@ -1,4 +1,4 @@
-"""Pink and Mink keeping an arm's capsules apart, for bench/clearance_peers.py."""
+"""Solvers of Pink and Mink that keep the capsules of an arm apart, for bench/clearance_peers.py."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SOLVER = "daqp"
 
 
 class Scene:
-    """An arm, its capsules and obstacles in Pinocchio and Coal, and as an MJCF for MuJoCo."""
+    """An arm with its capsules and obstacles, in Pinocchio and Coal, and as MJCF for MuJoCo."""
 
     def __init__(self, arm: fp.SerialArm, limits: fp.JointLimits, clearance: fp.Clearance) -> None:
         import pinocchio as pin
@@ -48,7 +48,7 @@ class Scene:
         self.data, self.state = self.model.createData(), self.geometry.createData()
 
     def distance(self, q: Array) -> float:
-        """The least of all pairs [m]."""
+        """Smallest distance of all pairs [m]."""
         self.pin.computeDistances(self.model, self.data, self.geometry, self.state, q)
         return min(float(each.min_distance) for each in self.state.distanceResults)
 
@@ -83,7 +83,7 @@ def placed(frame: Array) -> str:
 
 
 class Pink:
-    """Its SelfCollisionBarrier over all pairs."""
+    """Pink with a SelfCollisionBarrier over all pairs."""
 
     def __init__(self, scene: Scene, q: Array, dt: float, gain: float = 1.0, acceleration: Array | None = None) -> None:
         import pink
@@ -134,7 +134,7 @@ class Pink:
 
 
 class Mink:
-    """Its CollisionAvoidanceLimit over all pairs."""
+    """Mink with a CollisionAvoidanceLimit over all pairs."""
 
     def __init__(self, scene: Scene, q: Array, dt: float, gain: float = 1.0) -> None:
         import mink

@@ -1,7 +1,7 @@
-"""Instructions a call of each job in count.cpp, by callgrind: the same on a busy machine as on an idle one.
+"""Instructions per call of each job in count.cpp, by callgrind. The counts do not depend on the load of the machine.
 
-The mean of all calls, the usual call (the median) and the worst. Means are compared with those in instructions.json,
-where the compiler is one that they were recorded with. Fails if one has grown by more than 5 %.
+Prints the mean of all calls, the median ("usual") and the maximum ("worst"). If instructions.json has counts for the
+compiler, the means are compared with these counts. Fails if a mean has grown by more than 5 %.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ RECORD = Path(__file__).with_name("instructions.json")
 
 
 class Count(NamedTuple):
-    """Instructions of a job's calls."""
+    """Instructions per call of a job."""
 
     mean: float
     usual: float
@@ -30,7 +30,7 @@ class Count(NamedTuple):
 
 
 def count(program: Path) -> dict[str, Count]:
-    """Instructions a call, by job."""
+    """Instructions per call of each job."""
     with tempfile.TemporaryDirectory() as folder:
         command = ["valgrind", "--tool=callgrind", "--collect-atstart=no", "--callgrind-out-file=out", str(program)]
         run = subprocess.run([*command, str(CALLS)], cwd=folder, capture_output=True, text=True, check=False)
@@ -51,7 +51,7 @@ def count(program: Path) -> dict[str, Count]:
 
 
 def compiler_of(program: Path) -> str:
-    """Its name and major version, by which counts are recorded."""
+    """Name and major version of the compiler of a program, under which counts are recorded."""
     built_with = json.loads(program.with_name("built_with.json").read_text())
     return str(built_with["compiler"]).split(".")[0]
 
@@ -61,7 +61,7 @@ def recorded() -> dict[str, dict[str, float]]:
 
 
 def grown(counts: dict[str, float], record: dict[str, float]) -> list[str]:
-    """Messages on the jobs whose counts have grown too much, or that are in only one of the two."""
+    """Messages on jobs whose counts have grown too much, and on jobs that only `counts` or only `record` has."""
     lines = [f"{job} is new: record it" for job in counts.keys() - record.keys()]
     lines += [f"{job} is recorded, but not counted any more" for job in record.keys() - counts.keys()]
     for job in counts.keys() & record.keys():

@@ -1,12 +1,12 @@
-// Two Pandas hold a tray: random motions whose object path saturates both arms, and the errors of the relative pose and
-// the bounds.
+// Two Pandas hold a tray on random object paths that saturate both arms. Prints the errors of the relative pose, and
+// the excess over the bounds.
 //
 //     bench_grasp [motions = 10000] [first = 0] [threads]
 //
 // The relative pose is on the first level, the pose of the object on the second, a posture on the third. Every motion
-// is executed twice, the second time with stop() at a random time. bench/grasp_worker.py has the same motions with the
-// same random numbers. Fails if a relative pose differs from the start by more than 1e-6 m or rad in any motion, or by
-// more than 1e-9 in more than 1 % of the motions, or if a bound is exceeded by more than 1e-9.
+// is executed twice, the second time with stop() at a random time. bench/grasp_worker.py generates the same motions
+// from the same random numbers. Fails if a relative pose differs from the start by more than 1e-6 m or rad in any
+// motion, or by more than 1e-9 in more than 1 % of the motions, or if a bound is exceeded by more than 1e-9.
 
 #include <algorithm>
 #include <array>

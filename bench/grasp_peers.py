@@ -1,13 +1,14 @@
-"""Two Pandas hold a tray, by fpbm_cpp and peers: `python bench/grasp_peers.py [--motions 20]` prints a table.
+"""Two Pandas hold a tray, by fpbm_cpp and other libraries: `python bench/grasp_peers.py [--motions 20]` prints a table.
 
-The same random object paths as in bench/grasp.cpp, faster than the arms; bounds are those of the preset. Errors of the
-relative pose are the largest of each motion; excesses are by differences of positions, of velocities and accelerations
-as shares of the bounds. Each peer is installed from PyPI into its own virtual environment; those that cannot be
-installed are listed.
+The random object paths are those of bench/grasp.cpp, and are faster than the arms. The bounds are those of the preset.
+The error of the relative pose is the largest error in each motion. The excess over the bounds is computed by
+differences of positions. For velocities and accelerations, the excess is relative to the bound. Each library is
+installed from PyPI into its own virtual environment. The output lists libraries that cannot be installed.
 
-The peers minimise weighted squares: the relative pose has the cost 100 and the object 1 (Pink, Mink, roboplan), or is
-an equality (PlaCo). They get the object's pose a tick ahead. With a gain of 1, their default,
-the object's error is to vanish in one tick; with 0.02, at 20/s. fpbm_cpp also bounds accelerations and jerks.
+The other libraries minimise weighted squares. In Pink, Mink and roboplan, the cost of the relative pose is 100, and the
+cost of the object is 1. In PlaCo, the relative pose is an equality. The libraries receive the pose of the object for
+the end of the tick. With a gain of 1, their default, they correct the whole error of the object in one tick. With 0.02,
+the error decays at 20/s. fpbm_cpp also bounds accelerations and jerks.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ import numpy as np
 from stack_peers import HERE, Environment, call, table
 
 PACKAGES = {"Pink": ("pin-pink", "daqp"), "Mink": ("mink", "daqp"), "PlaCo": ("placo",), "roboplan": ("roboplan",)}
-# The arguments of grasp_worker.Options.
+# Name of the row, library, and arguments of grasp_worker.Options.
 ROWS: list[tuple[str, str, list[Any]]] = [
     ("Pink", "Pink", [1]),
     ("Pink, gain 0.02", "Pink", [0.02]),

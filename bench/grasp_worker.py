@@ -1,6 +1,6 @@
-"""Motions of a tray in two Pandas by one library, for bench/grasp_peers.py, which starts a process for each library.
+"""Motions of a tray that two Pandas hold, by one library. bench/grasp_peers.py runs this file for each library.
 
-The motions are those of bench/grasp.cpp, by the same random numbers. Prints JSON.
+The motions are those of bench/grasp.cpp, from the same random numbers. Prints JSON.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ DT = 1e-3
 TICKS, MOVE, MOVES, HOLD = 3000, 600, 4, 1000
 HOME = np.array([0.0, -0.6, 0.0, -2.4, 0.0, 1.8, 0.785])
 PLACES = {"right": -0.4, "left": 0.4}  # Along y [m].
-# Costs of the relative pose, of the object's pose and of the posture: the costs of the object and the posture as in
-# Pink's and Mink's examples. Their squares are in the programs.
+# Costs of the relative pose, of the pose of the object and of the posture. The costs of the object and of the posture
+# are those of the examples of Pink and Mink. The quadratic programs contain the squares of the costs.
 COSTS = (100.0, 1.0, 1e-3)
 TOLERANCE = 1e-10  # Tolerance of quadratic programs, as in bench/stack_solvers.py.
 
@@ -51,14 +51,14 @@ class Random:
 
 
 class ObjectPath:
-    """Quintic motions between waypoints, faster than the arms."""
+    """Quintic motions of the object between waypoints, faster than the arms."""
 
     def __init__(self, random: Random) -> None:
         self.at = [(np.zeros(3), np.zeros(3))]
         self.at += [(random.vector(3, 0.5), random.vector(3, 0.8)) for _ in range(MOVES)]
 
     def __call__(self, tick: int, start: Array) -> tuple[Array, Array, Array]:
-        """Pose; velocity and acceleration of the position, with zeros for the rotation."""
+        """Pose of the object, and the velocity and acceleration of its position, with zeros for the rotation."""
         k = min(tick // MOVE, MOVES - 1)
         duration, s = MOVE * DT, min((tick - k * MOVE) / MOVE, 1.0)
         part = s**3 * (10.0 + s * (6.0 * s - 15.0))
@@ -77,7 +77,7 @@ def origin(frame: Array) -> str:
 
 
 def placed(side: str, i: int) -> Array:
-    """Placement of an arm's joint i in the frame of the previous joint; of the tip, for i = 7."""
+    """Placement of joint i of an arm in the frame of the previous joint. i = 7: placement of the tip."""
     arm = fp.SerialArm.preset("panda")
     frame = np.array(arm.joints[i].placement if i < arm.dof else arm.tip)
     frame[1, 3] += PLACES[side] if i == 0 else 0.0
@@ -118,19 +118,19 @@ def mjcf(limits: fp.JointLimits) -> str:
 
 
 class Options(NamedTuple):
-    gain: float = 1.0  # Share of the object's error that is to vanish in a tick, for peers.
-    acceleration: bool = False  # Bounds on accelerations, where the peer has them.
+    gain: float = 1.0  # Fraction of the object's error that the other libraries correct in a tick.
+    acceleration: bool = False  # Whether accelerations have bounds, for libraries with these bounds.
     grasp_gain: float = 1.0
 
 
 class Solver(Protocol):
     def reset(self, q: Array, grasp: Array) -> None: ...
     def step(self, path: Callable[[int], tuple[Array, Array, Array]], tick: int) -> tuple[Array, bool]:
-        """The posture after a tick, and whether there was an answer: without, the robot stands still."""
+        """The posture after a tick, and whether a solution was found. Without a solution, the robot does not move."""
 
 
 class Ours:
-    """Relative pose, object, posture, on a level each."""
+    """fpbm_cpp with three levels: relative pose, object, posture."""
 
     def __init__(self, limits: fp.JointLimits, options: Options) -> None:
         self.robot = fp.Robot.preset("two_pandas")
@@ -227,7 +227,7 @@ class Mink:
 
 
 class Placo:
-    """The relative pose with the priority `hard`, an equality; the others soft."""
+    """PlaCo with the relative pose as a `hard` task, which is an equality. The other tasks are soft."""
 
     def __init__(self, limits: fp.JointLimits, options: Options) -> None:
         import placo
@@ -270,8 +270,8 @@ class Placo:
 
 
 class Roboplan:
-    """The relative pose is that of the left tip with the right one as base frame. All tasks have one priority: with
-    the priorities 1, 2 and 3 the relative pose differed by 0.1 m."""
+    """roboplan with the relative pose of the left tip in the frame of the right tip. All tasks have the same priority:
+    with the priorities 1, 2 and 3, the relative pose differed by 0.1 m."""
 
     def __init__(self, limits: fp.JointLimits, options: Options) -> None:
         import roboplan.core as core
@@ -317,14 +317,14 @@ SOLVERS: dict[str, Any] = {"fpbm_cpp": Ours, "Pink": Pink, "Mink": Mink, "PlaCo"
 
 
 def log(R: Array) -> Array:
-    """Rotation vector of a rotation of less than half a turn."""
+    """Rotation vector of a rotation by less than half a turn."""
     axis = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]]) / 2
     sine = np.linalg.norm(axis)
     return axis if sine < 1e-9 else axis * (np.arctan2(sine, (np.trace(R) - 1) / 2) / sine)
 
 
 def partly(now: Array, target: Array, gain: float) -> Array:
-    """A pose between two, for tasks without a gain."""
+    """Pose at the fraction `gain` from `now` to `target`, for tasks without a gain."""
     pose = now.copy()
     pose[:3, 3] += gain * (target[:3, 3] - now[:3, 3])
     pose[:3, :3] = fp.rotation(gain * log(target[:3, :3] @ now[:3, :3].T)) @ now[:3, :3]
@@ -332,7 +332,7 @@ def partly(now: Array, target: Array, gain: float) -> Array:
 
 
 def excess(limits: fp.JointLimits, q: Array) -> list[float]:
-    """Excess of positions [rad]; of velocities and accelerations as shares of the bounds, by differences of q."""
+    """Excess of positions [rad], and of velocities and accelerations relative to the bounds, by differences of q."""
     shares = [
         float((np.abs(np.diff(q, k, axis=0)) / DT**k / bound).max() - 1)
         for k, bound in ((1, limits.velocity), (2, limits.acceleration))

@@ -4,8 +4,8 @@
 
 #include "step.hpp"
 
-// As many arms as a SIMD register has lanes, compiled for one type of processor. Rows: part/arm/task/scheme/kind, where
-// an arm counts as a call.
+// Steps of several arms in parallel, one arm in each SIMD lane, compiled for one type of processor. Rows:
+// part/arm/task/scheme/kind. Each arm counts as a call.
 namespace bench {
 
 constexpr int kLanes = static_cast<int>(std::experimental::native_simd<double>::size());

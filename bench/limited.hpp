@@ -41,9 +41,10 @@ struct Answer {
 };
 
 /// Calls solve(box, from, desired, answer) for each problem of Limiter: the motion from `from` toward `desired`, as far
-/// as the box admits. Without bounds on jerk, there is one problem, from a motion that slows the arm down. With bounds
-/// on jerk, there are two: the same within the box in time; then from the acceleration of the last tick toward this
-/// result, within the box of the tick. Returns false if solve() finds no solution.
+/// as the box admits. Without bounds on jerk, there is one problem: `from` is a motion that slows the arm down. With
+/// bounds on jerk, there are two problems. The first problem is the same with box_in_time(). In the second problem,
+/// `from` is the acceleration of the last tick, `desired` is the result of the first problem, and the box is the box of
+/// the tick. Returns false if solve() finds no solution.
 template <typename Case, int N = Case::kDof, typename Solve>
 bool solve_within(const fpbm::Limits<fpbm::Level::kAcceleration, N>& limits, const Asked<Case>& asked,
                   const fpbm::Vector<N>& desired, Answer<Case>& answer, Solve&& solve) {
@@ -133,7 +134,7 @@ std::vector<Asked<Case>> asked(std::size_t count) {
 
 /// Results of a library on 10,000 problems, compared with this library.
 struct Score {
-  int slowed = 0;    ///< This library scales the task: as an equality, the problem has no solution.
+  int slowed = 0;    ///< This library scales the task: with the whole task as an equality, the problem has no solution.
   int unsolved = 0;  ///< The library finds no solution.
   int off_line = 0;  ///< The tip leaves the line of the task by more than 1e-3 rad.
   int outside = 0;   ///< A joint exceeds its box by more than 1e-6 of its bound.

@@ -10,8 +10,8 @@
 //
 //   min ½ ‖z − g‖² + ½ w (1 − s)²,  J z = s J g,  lower ≤ z ≤ upper,  0 ≤ s ≤ 1.
 //
-// The box and the motion `from` in it are this library's, because a QP library has none. With bounds on jerk, a step
-// has two of these programs, as in Limiter (solve_within).
+// This library computes the box and the motion `from` in the box, because a QP library has no functions for them. With
+// bounds on jerk, a step has two of these programs, as in Limiter (solve_within).
 namespace bench {
 namespace {
 

@@ -7,8 +7,8 @@
 #include "limited.hpp"
 #include "pinocchio_model.hpp"
 
-// TSID's own method on the same problem: a task for the tip as a cost, within its own bounds on the joints, by
-// eiquadprog-fast. TSID always computes the dynamics of the arm too, and has no bounds on jerk.
+// TSID's own method on the same problem, with eiquadprog-fast: the tip task is a cost, and TSID computes the bounds on
+// the joints. TSID always computes the dynamics of the arm too, and has no bounds on jerk.
 namespace bench {
 namespace {
 

@@ -12,7 +12,7 @@
 namespace bench {
 namespace {
 
-/// Adds a joint like Pinocchio's reader of URDF files.
+/// Adds a joint as Pinocchio's URDF parser does.
 pinocchio::JointIndex add_joint(pinocchio::Model& model, const fpbm::TreeJoint<>& given) {
   const auto& joint = given.joint;
   const auto parent = static_cast<pinocchio::JointIndex>(given.parent);

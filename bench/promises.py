@@ -1,4 +1,4 @@
-"""The promises on the results, and whether they hold."""
+"""Promised bounds on the results, and whether the results satisfy them."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ if TYPE_CHECKING:
     from report import Results
 
 PEERS = {"pinocchio": "Pinocchio + Eigen", "kdl": "KDL + Eigen"}
-# Reference of promises that is no longer in the tree, 8e7cfab. Its Panda pose step of FPBM took 0.25 of
-# Pinocchio + Eigen's on a quiet machine (0.28 in its own results, on a busy one); bench/README.md says how it stands in
-# for the time. Instructions of its tick, by g++ 12; limited ticks were first counted at 02cf2e0.
+# Some promises are relative to the earlier commit 8e7cfab. Its Panda pose step of FPBM took 0.25 of the time of
+# Pinocchio + Eigen on a quiet machine (0.28 in the results of this commit, on a busy machine). bench/README.md explains
+# the use of this ratio. Below: instructions of its ticks by g++ 12. Limited ticks were first counted at 02cf2e0.
 OLD_STEP = 0.25
 OLD_INSTRUCTIONS = {
     "loop/panda/pose/tick": 22541.1,
@@ -22,13 +22,13 @@ OLD_INSTRUCTIONS = {
 
 
 def instructions(results: Results, job: str) -> float | None:
-    """Mean of a job's calls, where its compiler is the one of OLD_INSTRUCTIONS."""
+    """Mean instructions per call of a job. None without a count by the compiler of OLD_INSTRUCTIONS."""
     same = str(results.values["built_with"]["compiler"]).startswith("g++ 12.")
     return results.values.get("instructions", {}).get(job) if same else None
 
 
 def rows(results: Results) -> list[list[str]]:
-    """The promise, the measured value, the bar, and whether the promise holds."""
+    """Rows with a promise, the measured value, the promised bound, and whether the value satisfies the bound."""
     lines: list[list[str]] = []
 
     def add(what: str, value: float | None, bar: float, text: str, at_least: bool = False) -> None:
@@ -76,7 +76,7 @@ def rows(results: Results) -> list[list[str]]:
     add("UR5e step of FPBM, position and axis of the tip: share of a Panda pose step", of_pose, 1.1, "{:.2f}")
     many = results.least("python/panda/pose/fpbm/fpbm_cpp_many")
     add("Panda pose step of FPBM from Python, 10,000 states a call, on one thread", many, 600.0, "{:.0f} ns")
-    if results.values.get("isolated"):  # On a shared core this would be a promise about others.
+    if results.values.get("isolated"):  # On a shared core, the tail depends on other programs.
         for row in results.tails:
             if row["caches"] == "warm" and row["name"] != "timer":
                 name = row["name"].replace("/", " ")

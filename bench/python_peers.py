@@ -1,9 +1,9 @@
-"""A step of each scheme from Python: fpbm_cpp against Pinocchio, the Robotics Toolbox, Pink and Mink, where installed.
+"""Times of a step of each scheme from Python: fpbm_cpp, Pinocchio, the Robotics Toolbox, Pink and Mink, if installed.
 
-Peers without these schemes get them from NumPy, on their own kinematics, with solves instead of the paper's
-pseudoinverses; their answers agree with fpbm_cpp's to 1e-9 before any is timed. Pink and Mink solve a quadratic program
-for the tip alone, without limits: their targets are small shifts, for which that is MVN with feedback to 1e-3. Rounds
-of all rows alternate, each round in another order.
+Pinocchio and the Robotics Toolbox do not have these schemes. NumPy computes the schemes on their kinematics, by solving
+linear systems instead of the paper's pseudoinverses. Before the timing, their results are compared with fpbm_cpp, to
+1e-9. Pink and Mink solve a quadratic program for the tip only, without limits. Their targets are small displacements:
+then, the program equals MVN with feedback, to 1e-3. Each round times all rows in another order.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ Array = NDArray[np.float64]
 
 ALPHA, GAIN, K1, K2 = 0.6, 10.0, 20.0, 100.0
 STATES, ROUNDS = 32, 15
-MANY = 10_000  # States that one call of fpbm_cpp answers.
+MANY = 10_000  # Number of states in one call of fpbm_cpp.
 
 
 class Case(NamedTuple):
-    """An arm with a task, whose velocities are these rows of the tip's six."""
+    """An arm with a task. rows: rows of the task in the twist of the tip."""
 
     arm: fp.SerialArm | fp.PlanarArm
     joints: tuple[fp.Joint, ...]
@@ -45,8 +45,8 @@ class Case(NamedTuple):
 class Input(NamedTuple):
     q: Array
     qd: Array
-    x: Array  # As fpbm_cpp takes it,
-    target: Array  # and as a homogeneous matrix.
+    x: Array  # Reference in the format of fpbm_cpp.
+    target: Array  # The same reference as a homogeneous matrix.
     xd: Array
     xdd: Array
 
@@ -56,7 +56,7 @@ Kinematics = Callable[[Array, Array, bool], tuple[Array, Array, Any]]
 
 
 class Peer(Protocol):
-    """A library's kinematics, and its x ⊖ y of poses."""
+    """Kinematics of a library, and x ⊖ y of poses."""
 
     def __init__(self, case: Case) -> None: ...
     def kinematics(self, q: Array, qd: Array, with_rate: bool) -> tuple[Array, Array, Any]: ...
@@ -76,7 +76,7 @@ def cases() -> Iterator[tuple[str, Case]]:
 
 
 def inputs(case: Case, *, shifts: bool = False) -> list[Input]:
-    """States about a bent posture, and references near by, or shifts to rest near by."""
+    """States around a bent posture, and references near the tip. shifts: references at rest, nearer to the tip."""
     rng = np.random.default_rng(1)
     n, m = case.arm.dof, case.rows.stop
     result = []
@@ -155,7 +155,7 @@ class RoboticsToolbox:
 
 
 def by_numpy(law: str, case: Case, peer: Peer) -> Callable[[Input], Array]:
-    """The scheme as one writes it, on a peer's kinematics."""
+    """The scheme in typical NumPy code, on the kinematics of another library."""
     rows, m = case.rows, case.rows.stop
     winv = 1.0 / np.arange(1.0, case.arm.dof + 1.0)
     alpha = {"man": 0.0, "wmvn_acceleration": 1.0}.get(law, ALPHA)
@@ -189,7 +189,7 @@ def by_numpy(law: str, case: Case, peer: Peer) -> Callable[[Input], Array]:
     return velocity if law in ("mvn", "wmvn") else acceleration
 
 
-DT = 1.0 / GAIN  # A QP for the displacement of one step, divided by this, gives the feedback its gain.
+DT = 1.0 / GAIN  # The QP computes a displacement. Divided by DT, this displacement is the velocity of the feedback.
 DAMPING = 1e-9
 
 
@@ -212,7 +212,7 @@ def by_pink(case: Case) -> Callable[[Input], Array]:
 
 
 def mjcf(case: Case) -> str:
-    """The arm as MuJoCo reads it."""
+    """The arm as MJCF for MuJoCo."""
     import mujoco
 
     def place(frame: Array) -> str:
@@ -254,7 +254,7 @@ MODULES = {"pin": "pinocchio", "roboticstoolbox-python": "roboticstoolbox", "pin
 
 
 def version(package: str) -> str:
-    """Empty if it is not installed, or does not work here."""
+    """Version of a package; empty if the package is not installed, or cannot be imported."""
     try:
         importlib.import_module(MODULES.get(package, package))
         return metadata.version(package)
@@ -266,11 +266,11 @@ class Row(NamedTuple):
     name: str
     step: Callable[[Input], Array]
     inputs: list[Input]
-    states: int = 1  # That a call answers.
+    states: int = 1  # Number of states per call.
 
 
 def at_once(ours: Row) -> Row:
-    """All states in one call, again and again up to MANY."""
+    """A row with MANY states in one call. The states of `ours` are repeated."""
     times = -(-MANY // STATES)
     stacked = (np.concatenate([np.stack(each)] * times)[:MANY] for each in zip(*ours.inputs, strict=True))
     row = Row(f"{ours.name}_many", ours.step, [Input(*stacked)], MANY)
@@ -280,7 +280,7 @@ def at_once(ours: Row) -> Row:
 
 
 def agreeing(name: str, step: Callable[[Input], Array], ours: Row, tolerance: float) -> Row:
-    """The row of a peer, whose answers are ours."""
+    """The row of another library, after a check that its results equal the results of this library."""
     worst = 0.0
     for given in ours.inputs:
         expected = ours.step(given)
@@ -315,7 +315,7 @@ def rows(installed: set[str]) -> Iterator[Row]:
 
 
 def timed(row: Row, calls: int) -> float:
-    """Nanoseconds a state."""
+    """Time per state [ns]."""
     step, given = row.step, row.inputs
     calls = max(1, calls // row.states)
     begin = time.perf_counter_ns()

@@ -1,4 +1,4 @@
-"""bench/results/results.json as a page of tables, results.md, and a chart, results.png."""
+"""Writes the tables of bench/results/results.json to results.md, and a chart to results.png."""
 
 from __future__ import annotations
 
@@ -43,14 +43,14 @@ PYTHON = {
     "pink": "Pink (QP)",
     "mink": "Mink (QP)",
 }
-# Okabe and Ito's colours, which most of the colour-blind tell apart.
+# The colours of Okabe and Ito, which most colour-blind people can distinguish.
 BLACK, ORANGE, SKY, GREEN, BLUE, VERMILION = "#000000", "#E69F00", "#56B4E9", "#009E73", "#0072B2", "#D55E00"
 
 Row = dict[str, Any]
 
 
 def table(heads: list[str], rows: Iterable[list[str]]) -> list[str]:
-    """Markdown: text on the left, numbers on the right."""
+    """A table in Markdown: the first column is left-aligned, and the others are right-aligned."""
     return [
         "| " + " | ".join(heads) + " |",
         "|" + "---|" + "---:|" * (len(heads) - 1),
@@ -60,7 +60,7 @@ def table(heads: list[str], rows: Iterable[list[str]]) -> list[str]:
 
 
 def nanoseconds(time: float) -> str:
-    """In the unit that suits it, to three digits."""
+    """A time in ns, µs or ms, with three digits."""
     power = min(len(str(int(time))) - 1, 8) // 3
     value = time / 1000**power
     return f"{value:.{0 if value >= 99.5 else 1 if value >= 9.95 else 2}f} {('ns', 'µs', 'ms')[power]}"
@@ -80,7 +80,7 @@ class Results:
         self.sweeps: list[Row] = values.get("sweeps", [])
 
     def least(self, name: str) -> float | None:
-        """Nanoseconds; noise only adds."""
+        """Smallest time of a row [ns]. Noise only increases times."""
         row = self.rows.get(name)
         return row["least"] if row else None
 
@@ -93,7 +93,10 @@ class Results:
 def comparison(
     results: Results, part: str, libraries: dict[str, str], rows: list[str] | None = None, kind: str = "scheme"
 ) -> list[str]:
-    """Rows of a part, arm/task/kind each, with a column a library and its multiple of fpbm_cpp's time."""
+    """A table of a part: a row for each arm/task/kind, and a column for each library.
+
+    Cells contain the time, and its ratio to the time of fpbm_cpp.
+    """
     if rows is None:
         names = (name.split("/") for name in results.rows)
         rows = list(dict.fromkeys("/".join(parts[1:-1]) for parts in names if parts[0] == part))
@@ -162,7 +165,7 @@ def tails(results: Results) -> list[str]:
 
 
 def over_median(results: Results) -> list[str]:
-    """How far p99.9 is above p50, for a job and for an empty call that takes as long, timed alternately with it."""
+    """Ratio p99.9 / p50 of a job, and of an empty call of the same duration that is timed alternately with the job."""
 
     def cells(row: Row) -> list[str]:
         job, empty = row["p99.9"] / row["p50"], row["empty_p99.9"] / row["empty_p50"]
@@ -180,7 +183,7 @@ def over_median(results: Results) -> list[str]:
 
 
 def line(points: list[tuple[int, float]]) -> tuple[float, float]:
-    """Slope and offset of the line through them, by least squares of relative distances."""
+    """Slope and offset of a line through points, by least squares of relative distances."""
     weights = [1 / time**2 for _, time in points]
     total = sum(weights)
     n0 = sum(w * n for w, (n, _) in zip(weights, points)) / total
@@ -191,7 +194,7 @@ def line(points: list[tuple[int, float]]) -> tuple[float, float]:
 
 
 def growth(results: Results) -> list[str]:
-    """Times against n, the line through them, and how far off it each is."""
+    """Times against n, a line through these times, and the relative distance of each time from the line."""
     kinds = {"fixed": "fixed at compile time", "run_time": "given at run time"}
     text = []
     names = [name.rsplit("/", 2)[0] for name in results.rows if name.startswith("growth/") and name.count("/") == 4]
@@ -201,7 +204,7 @@ def growth(results: Results) -> list[str]:
         for kind, words in kinds.items():
             rows = [row for row in results.rows if row.startswith(f"{name}/{kind}/")]
             points = sorted((int(row.rsplit("/", 1)[1]), results.rows[row]["least"]) for row in rows)
-            # At n = 7 a pose leaves one self-motion, which may have a law of its own.
+            # At n = 7, a pose leaves one self-motion, which may have separate code: the line excludes this time.
             slope, offset = line([(n, time) for n, time in points if "spatial" not in name or n > 7])
             off = [time / (slope * n + offset) - 1 for n, time in points]
             text.append(
@@ -215,7 +218,7 @@ def growth(results: Results) -> list[str]:
 
 
 def instructions(means: dict[str, float], paths: dict[str, list[float]]) -> list[str]:
-    """The mean, and of single calls the usual one (the median) and the worst."""
+    """A table of instructions per call: the mean, the median ("usual") and the maximum ("worst")."""
 
     def cells(name: str) -> list[str]:
         if name not in paths:
@@ -228,7 +231,7 @@ def instructions(means: dict[str, float], paths: dict[str, list[float]]) -> list
 
 
 def in_lanes(results: Results) -> list[str]:
-    """An arm by itself, and an arm of several side by side."""
+    """Tables of the time per arm: a single arm, and several arms in SIMD lanes."""
     rows = [row.split("/", 1)[1] for row in results.rows if row.startswith("step/") and row.endswith("/baseline")]
     rows = [row.removesuffix("/baseline") for row in rows]
     kinematics = [row.replace("fpbm", "acceleration") for row in rows]
@@ -241,7 +244,7 @@ def in_lanes(results: Results) -> list[str]:
 
 
 def limited(results: Results) -> list[str]:
-    """Limited steps of each library, the share of them that limits take, and how its answers compare."""
+    """Tables of limited steps of each library: times, the time for the limits, and a comparison of the results."""
     columns = {
         "unsolved": "without an answer",
         "outside": "outside the box",
@@ -272,7 +275,7 @@ def limited(results: Results) -> list[str]:
 
 
 def sweeps(results: Results) -> list[str]:
-    """A row for lanes × threads, and for each case its rate and ratio."""
+    """A table with a row for each lanes × threads, with the rate and the ratio of each case."""
     cases = list(dict.fromkeys(row["name"] for row in results.sweeps))
     rates = {(row["lanes"], row["workers"], row["name"]): row for row in results.sweeps}
     lines = []
@@ -369,7 +372,7 @@ def chart(results: Results, file: Path) -> None:
 
     figure, ((steps, tail), (size, rate)) = plt.subplots(2, 2, figsize=(12, 9), layout="constrained")
 
-    # From C++ first, each with its time in words.
+    # Rows from C++ are above rows from Python. The text of each bar is its time.
     colours = {"fpbm_cpp": BLUE, "pinocchio": ORANGE, "kdl": GREEN, "pinocchio_numpy": ORANGE, "robotics_toolbox": SKY}
     drawn = [("C++", f"step/panda/pose/fpbm/{library}", library, CPLUSPLUS[library]) for library in CPLUSPLUS]
     drawn += [("Python", f"python/panda/pose/fpbm/{library}", library, PYTHON[library]) for library in PYTHON]
@@ -423,7 +426,7 @@ def chart(results: Results, file: Path) -> None:
 
 
 def write(folder: Path) -> None:
-    """The page and, where matplotlib is installed, the chart."""
+    """Writes the page and, if matplotlib is installed, the chart."""
     results = Results(json.loads((folder / "results.json").read_text()))
     (folder / "results.md").write_text(page(results))
     try:
@@ -435,7 +438,7 @@ def write(folder: Path) -> None:
 
 
 def write_readme(folder: Path) -> None:
-    """The summary into the project's README, between its marks."""
+    """Writes the summary into the README of the project, between BEGIN and END."""
     text = README.read_text()
     before, rest = text.split(BEGIN)
     lines = summary(Results(json.loads((folder / "results.json").read_text())))

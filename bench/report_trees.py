@@ -1,4 +1,4 @@
-"""The report on robots as trees: kinematics beside Pinocchio, and how ticks grow with joints and levels."""
+"""Report on robots with several branches: kinematics compared with Pinocchio, and ticks by joints and levels."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ LEVELS = (1, 2, 3, 4)
 
 
 def kinematics(results: Results) -> list[list[str]]:
-    """A row for robot × part: this library's time, Pinocchio's and the ratio."""
+    """A row for each robot and part: the time of this library, the time of Pinocchio, and the ratio."""
     lines = []
     for robot, words in ROBOTS.items():
         for part, meaning in PARTS.items():

@@ -28,10 +28,10 @@ from fpbm_cpp import _core
 HERE = Path(__file__).parent
 RESULTS = HERE / "results"
 
-# Programs of Google Benchmark, a section of the report each; one of 20 repetitions of a row takes SECONDS.
+# Programs with Google Benchmark, one for each section of the report. Each of 20 repetitions of a row takes SECONDS.
 PROGRAMS = ("step", "limited", "parts", "loop", "growth", "trees", "ticks")
 SECONDS = 0.02
-# The output of bench_limited on 10,000 answers.
+# Counters of bench_limited in 10,000 problems (Score in limited.hpp).
 SCORES = ("slowed", "unsolved", "outside", "off_line", "smaller", "larger")
 LATEST = "out.json"
 
@@ -55,7 +55,7 @@ def machine() -> dict[str, Any]:
 
 
 def isolated_core() -> int | None:
-    """A processor that the system leaves idle (isolcpus=…)."""
+    """A processor that is isolated from the scheduler (isolcpus=…); None if there is none."""
     try:
         cores = Path("/sys/devices/system/cpu/isolated").read_text().strip()
     except OSError:
@@ -65,7 +65,7 @@ def isolated_core() -> int | None:
 
 @contextmanager
 def kept_to(core: int | None) -> Iterator[None]:
-    """Programs run on that core alone, if any, and before all others where the system lets us."""
+    """Runs programs on the given core only. If permitted, they also have real-time priority. None: no change."""
     if core is None:
         yield
         return
@@ -91,7 +91,7 @@ def call(program: Path, *arguments: str | Path) -> bytes:
 
 
 def google_benchmark(program: Path, quick: bool) -> list[dict[str, Any]]:
-    """Its rows, repeated in random order [ns]."""
+    """Times of the rows of a program, repeated in random order [ns]."""
     out = program.with_name(LATEST)
     call(
         program,
@@ -105,7 +105,7 @@ def google_benchmark(program: Path, quick: bool) -> list[dict[str, Any]]:
     for run in sorted(json.loads(out.read_text())["benchmarks"], key=lambda run: run["family_index"]):
         if run["run_type"] == "iteration":
             runs.setdefault(run["run_name"], []).append(run)
-    # Processor time leaves out the time of other programs.
+    # The processor time does not include the time of other programs.
     return [
         summary(name, [run["cpu_time"] for run in rounds])
         | {score: int(rounds[0][score]) for score in SCORES if score in rounds[0]}
@@ -122,7 +122,7 @@ def cplusplus(folder: Path, quick: bool) -> dict[str, Any]:
     for section in PROGRAMS:
         if (program := folder / f"bench_{section}").exists():
             results[section] = google_benchmark(program, quick)
-    # Of the programs in lanes, those that this processor can run.
+    # Programs in SIMD lanes that this processor supports.
     programs = [folder / f"bench_lanes_{kind}" for kind in ("baseline", *_core.processor_kinds()[::-1])]
     results["lanes"] = [row for program in programs if program.exists() for row in google_benchmark(program, quick)]
     core = isolated_core()

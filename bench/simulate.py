@@ -1,7 +1,7 @@
-"""The paper's circle from Python: fpbm_cpp against plain NumPy and SciPy, in one run.
+"""Times of the paper's circle from Python: fpbm_cpp, NumPy and SciPy, in one run.
 
-10 s at 1 kHz are 40,000 evaluations of FPBM. NumPy takes the very same RK4 steps on the same law; SciPy's DOP853 is
-reported at the tolerance that gives it the accuracy of those steps.
+10 s at 1 kHz require 40,000 evaluations of FPBM. NumPy computes the same RK4 steps with the same law. The tolerance of
+SciPy's DOP853 gives the accuracy of these steps.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ QD_FINAL = np.array([-0.0093120960, 0.0309612098, -0.0232966450, -0.0102744949])
 
 
 def fpbm_numpy(t: float, state: Array, anchor: Array) -> Array:
-    """(13) by solves of 2 x 2 systems, as one writes it in NumPy."""
+    """FPBM (13) in typical NumPy code, by solving 2 x 2 systems."""
     q, qd = state[:4], state[4:]
     s, sd, sdd = (
         math.sin(math.pi * t / (2 * T)) ** 2,
@@ -100,7 +100,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, help="also write the times to this JSON file")
     options = parser.parse_args()
 
-    # fpbm_cpp is timed before and after the others, so that a change of the machine's speed shows.
+    # fpbm_cpp is timed before and after the others, to detect a change of the speed of the machine.
     before, error = timed(by_fpbm, 100)
     rows = [("NumPy, same RK4 steps", *timed(by_numpy, 3)), ("SciPy DOP853, equal accuracy", *timed(by_scipy, 3))]
     after, _ = timed(by_fpbm, 100)

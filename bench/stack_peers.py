@@ -1,9 +1,9 @@
-"""One stack of tasks beside peers: `python bench/stack_peers.py` builds and runs all, and writes a page in results.
+"""A stack of tasks by several libraries: `python bench/stack_peers.py` builds and runs all, and writes a results page.
 
-In C++ (bench_stack): this library's limited step beside a cascade of quadratic programs, by eiquadprog on Pinocchio's
-kinematics. In Python (stack_worker.py): a tick of fp.Tracker beside Pink, Mink, PlaCo and roboplan. Each peer is
-installed from PyPI into a virtual environment of its own, as their requirements exclude each other; those that cannot
-be installed are listed. Ratios are of times in the same run, whose calls alternate.
+In C++ (bench_stack): a limited step of this library, and a cascade of quadratic programs by eiquadprog on Pinocchio's
+kinematics. In Python (stack_worker.py): a tick of fp.Tracker, and of Pink, Mink, PlaCo and roboplan. Each library is
+installed from PyPI into its own virtual environment, because their requirements conflict. The output lists libraries
+that cannot be installed. Ratios are computed from times in the same run, with alternating calls.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def call(*command: str | Path, **options: Any) -> str:
 
 
 class Environment:
-    """Packages in a virtual environment, with this interpreter's fpbm_cpp."""
+    """A virtual environment with packages, and with the fpbm_cpp of this interpreter."""
 
     def __init__(self, folder: Path, packages: tuple[str, ...]) -> None:
         self.python = folder / "bin" / "python"
@@ -51,7 +51,7 @@ class Environment:
 
 
 def cpp(work: Path, rounds: int, passes: int) -> tuple[dict[str, Any], str]:
-    """The output of bench_stack, and versions."""
+    """The output of bench_stack, and the versions of its libraries."""
     wheels = Environment(work / "cpp", CPP_PACKAGES)
     build = work / "build"
     prefix = f"-DFPBM_PINOCCHIO={wheels.packages / 'cmeel.prefix'}"
@@ -64,7 +64,7 @@ def cpp(work: Path, rounds: int, passes: int) -> tuple[dict[str, Any], str]:
 
 
 def python(work: Path, name: str) -> tuple[dict[str, Any], str]:
-    """The results of a peer and of this library, and its versions."""
+    """The results of another library and of this library, and the versions of the packages."""
     packages = PEERS[name].packages
     peer = Environment(work / name.lower(), packages)
     printed = call(peer.python, HERE / "stack_worker.py", name, env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"})

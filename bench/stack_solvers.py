@@ -1,7 +1,8 @@
-"""One stack of tasks by fpbm_cpp, Pink, Mink, PlaCo and roboplan, for bench/stack_peers.py.
+"""A stack of tasks by fpbm_cpp, Pink, Mink, PlaCo and roboplan, for bench/stack_peers.py.
 
-The Panda of the preset for all, as a URDF or MJCF. Levels: pose of the tip, position of the elbow (origin of joint 4),
-posture. All at velocity level, within bounds on position, velocity and, if the library has them, acceleration.
+All libraries use the Panda of the preset, as URDF or MJCF. The levels are the pose of the tip, the position of the
+elbow (origin of joint 4), and the posture. The other libraries are at velocity level. The bounds are on position,
+velocity and, if supported by the library, acceleration.
 """
 
 from __future__ import annotations
@@ -25,12 +26,14 @@ POSTURE_GAIN = 1.0
 START = np.array([0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785])
 ELBOW = 4
 
-# Weights of tip, elbow and posture: the weight of the tip is the default of Pink and Mink, the weight of the posture
-# the value in the examples of both, and the weight of the elbow between. Their squares are in the costs.
+# Weights of tip, elbow and posture. The weight of the tip is the default of Pink and Mink. The weight of the posture is
+# the value in the examples of Pink and Mink. The weight of the elbow is between these weights. The costs contain the
+# squares of the weights.
 WEIGHTS = (1.0, 0.1, 1e-3)
 
-# Tolerance of the quadratic programs of Pink and Mink. The defaults are 1e-6, of a displacement: in a tick of 1 ms 1e-3
-# rad/s, and 1 rad/s². roboplan has its default of 1e-6: with 1e-8, its motion of 20 s did not end in 50 s.
+# Tolerance of the quadratic programs of Pink and Mink. The default, 1e-6, applies to a displacement. In a tick of 1 ms,
+# this tolerance means 1e-3 rad/s and 1 rad/s². roboplan has its default of 1e-6: with 1e-8, the computation of the
+# motion of 20 s did not end in 50 s.
 TOLERANCE = 1e-10
 
 
@@ -40,7 +43,7 @@ class Panda(NamedTuple):
 
 
 def panda() -> Panda:
-    """The preset without its bounds on jerk, which no peer has."""
+    """The preset without its bounds on jerk, because no other library has bounds on jerk."""
     arm = fp.SerialArm.preset("panda")
     limits = arm.limits
     names = ("lower", "upper", "velocity", "acceleration")
@@ -48,7 +51,7 @@ def panda() -> Panda:
 
 
 class Targets(NamedTuple):
-    """Where the tasks are to be after a tick, for solvers of displacements."""
+    """Targets of the tasks for the end of a tick, for solvers that compute displacements."""
 
     tip: Array
     elbow: Array
@@ -56,15 +59,15 @@ class Targets(NamedTuple):
 
 
 class Solver(Protocol):
-    acceleration: bool  # Whether it bounds accelerations.
+    acceleration: bool  # Whether the solver bounds accelerations.
 
     def reset(self, q: Array) -> None: ...
     def step(self, targets: Targets) -> tuple[Array, bool]:
-        """The posture after a tick, and whether there was an answer: without, the arm stands still."""
+        """The posture after a tick, and whether a solution was found. Without a solution, the arm does not move."""
 
 
 class Options(NamedTuple):
-    lower: bool = True  # With elbow and posture.
+    lower: bool = True  # Whether the stack has elbow and posture.
     limits: bool = True
 
 
@@ -197,7 +200,8 @@ class Mink:
 
 
 class Placo:
-    """The tip with the priority `scaled`, which is strict; elbow and posture soft. Its weights are those of squares."""
+    """PlaCo with the tip as a `scaled` task, which has strict priority. Elbow and posture are soft tasks. Weights of
+    PlaCo are weights of squares."""
 
     acceleration = False
 
@@ -244,7 +248,7 @@ class Placo:
 
 
 class Roboplan:
-    """Its strict priorities 1, 2 and 3."""
+    """roboplan with the strict priorities 1, 2 and 3."""
 
     acceleration = True
 

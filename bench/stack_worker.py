@@ -1,6 +1,6 @@
-"""A peer beside fpbm_cpp on one stack of tasks, in a process of its own: see bench/stack_peers.py.
+"""Another library and fpbm_cpp with the same stack of tasks, in a separate process (bench/stack_peers.py).
 
-Both move a Panda of their own tick by tick; their calls alternate. Prints JSON.
+Each library moves its own Panda, tick by tick, with alternating calls. Prints JSON.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from stack_solvers import DT, GAIN, PEERS, POSTURE_GAIN, START, Array, Options, 
 import fpbm_cpp as fp
 
 TICKS = 20_000
-BLOCK = 100  # Ticks of which a ratio of times is taken.
-TOLERANCE = 5e-3  # Relative tolerance of the tip's motion in a tick: peers move along its tangent.
+BLOCK = 100  # Number of ticks for a ratio of times.
+TOLERANCE = 5e-3  # Relative tolerance of the tip motion in a tick: other libraries move the tip along the tangent.
 
 
 class Reference(NamedTuple):
@@ -36,7 +36,8 @@ class Reference(NamedTuple):
 
 
 class Path:
-    """Slow, then faster than the joints, then slow near the base, then slow again; steps of 5 cm every 1.5 s."""
+    """Path of the tip: slow, then faster than the joints, then slow near the base, then slow again. The target jumps by
+    5 cm every 1.5 s."""
 
     def __init__(self, arm: fp.SerialArm) -> None:
         self.start = np.asarray(arm.forward(START))
@@ -69,7 +70,7 @@ def elbow(arm: fp.SerialArm, q: Array) -> Array:
 
 
 def log(R: Array) -> Array:
-    """Rotation vector of a rotation of less than half a turn."""
+    """Rotation vector of a rotation by less than half a turn."""
     axis = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]]) / 2
     sine = np.linalg.norm(axis)
     angle = np.arctan2(sine, (np.trace(R) - 1) / 2)
@@ -88,7 +89,7 @@ def displaced(pose: Array, change: Array) -> Array:
 
 
 def ahead(arm: fp.SerialArm, q: Array, now: Reference, after: Reference) -> Targets:
-    """Where a tick of this library's law leads from q: the errors decay with the gains, and the references move on."""
+    """Targets after a tick of this library's law from q: errors decay with the gains, and references advance."""
     decay, slow = 1 - np.exp(-GAIN * DT), 1 - np.exp(-POSTURE_GAIN * DT)
     pose, place = np.asarray(arm.forward(q)), elbow(arm, q)
     change = decay * difference(now.tip, pose) + DT * now.twist
@@ -97,7 +98,7 @@ def ahead(arm: fp.SerialArm, q: Array, now: Reference, after: Reference) -> Targ
 
 
 class Motion:
-    """A Panda under a solver, and its motion."""
+    """The motion of a Panda with a solver."""
 
     def __init__(self, robot: Panda) -> None:
         self.robot = robot
@@ -133,7 +134,7 @@ def blocks(times: list[float]) -> Array:
 
 
 def run(robot: Panda, solver: Solver) -> tuple[list[dict[str, Any]], list[float]]:
-    """A peer and this library at both levels: their results, and the ratios of the peer's times to this library's."""
+    """Results of another library and of this library at both levels, and the ratios of times (other / this library)."""
     path = Path(robot.arm)
     trackers = [ours(robot, "velocity"), ours(robot, "acceleration")]
     motions = [Motion(robot) for _ in range(3)]
@@ -163,7 +164,7 @@ def run(robot: Panda, solver: Solver) -> tuple[list[dict[str, Any]], list[float]
 
 
 def agreement(robot: Panda, name: str, options: Options) -> float:
-    """Largest relative difference of the tip's motion in a tick from this library's, in ticks without active bounds."""
+    """Largest relative difference between the tip motions of both libraries in a tick without active bounds."""
     solver, path, worst = PEERS[name].make(robot, options), Path(robot.arm), 0.0
     tracker = ours(robot, "velocity")
     q = START

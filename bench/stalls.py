@@ -1,11 +1,11 @@
-"""Loads that wait for stores, a call of each job: store-forwarding stalls, found in a trace of memory by lackey.
+"""Loads that wait for stores (store-forwarding stalls) per call of each job, from a memory trace by lackey.
 
-A load of bytes that are still in the processor's store buffer gets them from there without a stall only if one store
-wrote all of them. Where two did, or one of them and the memory before it, it waits until the stores are done: a dozen
-cycles or so. A usual cause is a 16-byte load of two numbers that were stored one by one. The trace has every address,
-so that nothing is guessed; the counts do not depend on the machine's load.
+If the bytes of a load are still in the store buffer of the processor, the load has no stall only if a single store
+wrote all these bytes. If several stores wrote the bytes, or a store wrote only a part of them, the load waits until the
+stores are complete: about a dozen cycles. A usual cause is a 16-byte load of two numbers that were stored separately.
+The trace contains all addresses. Therefore, the counts are exact, and do not depend on the load of the machine.
 
-Compared with stalls.json, where the compiler is one that they were recorded with. Fails if a job has more than
+If stalls.json has counts for the compiler, the counts are compared with them. Fails if a job has more stalls than
 recorded.
 """
 
@@ -23,7 +23,7 @@ from pathlib import Path
 from count import compiler_of
 
 CALLS = 8
-# As many stores as the buffer of a Skylake has. An older one is done.
+# Size of the store buffer of a Skylake. Older stores are complete.
 BUFFER = 56
 RECORD = Path(__file__).with_name("stalls.json")
 CASES = {"planar4/position": ["fpbm", "fpbm_damped"], "panda/pose": ["fpbm", "fpbm_damped"]}
@@ -38,7 +38,7 @@ JOBS = [
 
 
 class Stores:
-    """Which store wrote each byte last."""
+    """The last store of each byte."""
 
     def __init__(self) -> None:
         self.count = 0
@@ -50,13 +50,13 @@ class Stores:
             self.writers[byte] = self.count
 
     def stall(self, address: int, size: int) -> bool:
-        """A load of these bytes: whether it has some, but not all of them, from one store that may be in the buffer."""
+        """Whether a load of these bytes stalls: a store that may be in the buffer wrote a part of the bytes only."""
         writers = {self.writers.get(byte, 0) for byte in range(address, address + size)}
         return len(writers) > 1 and max(writers) > self.count - BUFFER
 
 
 def find(trace: Iterable[str], mark: int) -> list[Counter[int]]:
-    """For each job, how often each instruction stalled between stores to the mark, by its address."""
+    """For each job, the number of stalls of each instruction (by address) between stores to the mark."""
     stores, jobs, calls, instruction = Stores(), [Counter[int]()], 0, 0
     inside = False
     for line in trace:
@@ -82,7 +82,7 @@ def find(trace: Iterable[str], mark: int) -> list[Counter[int]]:
 
 
 def stalls(program: Path) -> dict[str, Counter[int]]:
-    """For each job, how often each instruction stalled, by its address."""
+    """For each job, the number of stalls of each instruction, by address."""
     symbols = subprocess.run(["nm", "-C", str(program)], capture_output=True, text=True, check=True).stdout
     mark = re.search(r"^([0-9a-f]+) \w bench::.*::mark$", symbols, re.MULTILINE)
     assert mark
@@ -98,7 +98,7 @@ def stalls(program: Path) -> dict[str, Counter[int]]:
 
 
 def listing(program: Path) -> dict[int, str]:
-    """Its instructions."""
+    """The instructions of a program, by address."""
     command = ["objdump", "-d", "-C", "--no-show-raw-insn", str(program)]
     text = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     return {int(m[1], 16): m[2] for m in re.finditer(r"^ *([0-9a-f]+):\s+(.+)$", text, re.MULTILINE)}

@@ -1,9 +1,10 @@
-"""Arm-steps a second of fp.sweep, by the lanes it runs in and the threads: the paper's circle, and a Panda's in poses,
-without limits and within its own.
+"""Arm-steps per second of fp.sweep, by the type of SIMD lanes and the number of threads.
 
-An arm-step is an RK4 step of 1 ms of one motion, four evaluations of the closed loop. Lanes are chosen when the package
-is imported, so that each kind has a process of its own; rounds of the kinds alternate. "none" is the code for every
-processor. It is timed on fewer motions, since its motions per second do not depend on their number.
+The motions are the paper's circle, and a circle of a Panda with a pose task, without limits and within the limits of
+the Panda. An arm-step is an RK4 step of 1 ms of one motion: four evaluations of the closed loop. The package selects
+the lanes when it is imported. Therefore, each type of lanes has its own process. Rounds of the types alternate. "none"
+is the code for every processor. This code is timed with fewer motions, because its motions per second do not depend on
+their number.
 """
 
 from __future__ import annotations
@@ -25,14 +26,14 @@ import fpbm_cpp as fp
 from fpbm_cpp import _core
 
 WORKERS, ROUNDS, DT = (1, 2), 3, 1e-3
-FEWER, FEWEST = 10, 64  # Motions without lanes, a share; in any case, for threads to share evenly.
+FEWER, FEWEST = 10, 64  # Divisor of the number of motions without lanes; smallest number, for an even load of threads.
 PAPER = "planar4/position"
 CHECKED, TOLERANCE = 32, 1e-9
-SCATTER = 0.01  # Spread of the starts [rad]: so small that every motion stays within the workspace.
+SCATTER = 0.01  # Spread of the start postures [rad], with which every motion stays within the workspace.
 
 
 class Case(NamedTuple):
-    """Motions by one scheme along one path, from starts scattered about q0."""
+    """Motions with one scheme along one path, from random start postures around q0."""
 
     arm: fp.Arm
     path: fp.Path
@@ -66,12 +67,12 @@ CASES = {
 
 
 def kinds() -> list[str]:
-    """Of lanes, those that this processor and this build of the package have; no lanes at all first."""
+    """A list with "none", then the types of lanes that this processor and this build of the package have."""
     return ["none", *(kind for kind in _core.processor_kinds()[::-1] if find_spec(f"fpbm_cpp._lanes_{kind}"))]
 
 
 def measure(motions: int) -> list[dict[str, Any]]:
-    """In the lanes of this process: seconds of each case with each number of workers, and some of its answers."""
+    """Durations of each case with each number of workers in this process [s], and some of the results."""
     rows = []
     for name, case in CASES.items():
         count = max(FEWEST, round(case.share * motions))
@@ -90,7 +91,7 @@ def measure(motions: int) -> list[dict[str, Any]]:
 
 
 def measured_in(kind: str, motions: int) -> list[dict[str, Any]]:
-    """measure() in a process whose lanes are of this kind."""
+    """Results of measure() in a process with this type of lanes."""
     command = [sys.executable, __file__, "--measure", "--motions", str(motions)]
     run = subprocess.run(command, env={**os.environ, "FPBM_LANES": kind}, stdout=subprocess.PIPE, check=False)
     if run.returncode != 0:
@@ -100,7 +101,7 @@ def measured_in(kind: str, motions: int) -> list[dict[str, Any]]:
 
 
 def table(runs: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The best round of each row, and its multiple of the rate of one thread without lanes."""
+    """The best round of each row, with the ratio of its rate to the rate of one thread without lanes."""
     best: dict[tuple[str, str, int], dict[str, Any]] = {}
     for run in runs:
         key = run["name"], run["lanes"], run["workers"]
@@ -113,7 +114,7 @@ def table(runs: list[dict[str, Any]]) -> list[dict[str, Any]]:
     for (name, kind, workers), run in sorted(best.items(), key=lambda item: list(CASES).index(item[0][0])):
         rate = run["motions"] * round(CASES[name].path.duration / DT) / run["seconds"]
         row = {"name": name, "lanes": kind, "workers": workers, "motions": run["motions"], "per_second": rate}
-        scalar = next((row["per_second"] for row in rows if row["name"] == name), rate)  # The first row of its name.
+        scalar = next((row["per_second"] for row in rows if row["name"] == name), rate)  # The first row with this name.
         rows.append({**row, "ratio": rate / scalar})
     return rows
 

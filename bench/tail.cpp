@@ -17,9 +17,10 @@
 
 #include "jobs.hpp"
 
-// Durations of single calls, each waited for: percentiles of many calls, with warm and with cold caches, as JSON. Row
-// "timer" is the duration of no job; it is not subtracted. Alternating with a warm job, an empty job of the same
-// duration is timed ("empty_…"): its tail is caused by the machine, not by the job.
+// Durations of single calls, measured until the result of the call is available. Prints percentiles of many calls, with
+// warm and with cold caches, as JSON. Row "timer" is the duration without a job. This duration is not subtracted from
+// the other rows. Alternately with a warm job, an empty job of the same duration is timed ("empty_…"): the machine
+// causes the tail of the empty job.
 namespace bench {
 namespace {
 
@@ -59,7 +60,7 @@ double tick_length() {
   return passed.count() / static_cast<double>(last - first);
 }
 
-/// Counts of durations. Small, because most durations are similar: the caches are left to the timed code.
+/// Counts of durations. Most durations are similar. Therefore, the histogram uses a small part of the caches.
 class Histogram {
  public:
   void add(std::uint64_t ticks) {

@@ -137,7 +137,7 @@ struct WorstPanda {
   static auto tracker(const fpbm::Vector<7>& q) { return fpbm::Tracker(arm(), Space{}, damped(), q); }
 };
 
-/// Among surroundings(), from near a posture that keeps the margin.
+/// A Panda among surroundings(). The start is near a posture that keeps the margin.
 struct WorstClearPanda {
   static constexpr int kDof = 7;
   static std::string name() { return "panda/pose_clear"; }

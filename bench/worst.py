@@ -1,6 +1,6 @@
-"""Instructions of the longest ticks that search_worst.cpp has found, by callgrind, and of ticks without active bounds.
+"""Instructions of the longest ticks that search_worst.cpp has found, and of ticks without active bounds, by callgrind.
 
-Fails if a longest tick takes more than its share of free ticks.
+Fails if the ratio of the longest tick to a tick without active bounds ("free") exceeds the bound of its case.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from pathlib import Path
 
 from count import count
 
-# The most free ticks that a tick may take; 4 where a case is not named.
+# Largest ratio of the longest tick to a free tick. Cases without an entry have 4.
 MOST = {"panda/pose_clear": 6.0}
 
 

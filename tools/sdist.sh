@@ -1,5 +1,5 @@
 #!/bin/sh
-# Writes the source distribution to dist/, and checks that the archive has only the files for building and testing.
+# Writes the source distribution to dist/, and checks that the archive has exactly the files for building and testing.
 #   sdist.sh PYTHON
 # PYTHON must have the packages of the dependency group `wheel`.
 set -eu

@@ -17,7 +17,7 @@ void locked(Robot& robot) {
   const Transform<> start = robot.tip();
   Transform<> elsewhere = start;
   elsewhere.p(2) += 0.1;
-  robot.watched = false;  // If locks stop the arm, the arm stops immediately.
+  robot.watched = false;  // No check of the limits: after too many locked ticks, the arm stops immediately.
   robot.hear("~/target_pose", pose_message(elsewhere, 12.0));
   robot.tick(200);
   stand_in::locked = true;

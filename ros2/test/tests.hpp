@@ -7,7 +7,7 @@ void targets();
 void faults(stand_in::Robot& robot);
 /// Locks interfaces one by one, in motion and at deactivation.
 void locks();
-/// Update rates, asynchronous updates, and calls before the next period of the controller.
+/// Update rates, asynchronous updates, and calls that are too early.
 void rates();
 /// Activations of an arm with an offset, with a lag, in motion, and with invalid readings.
 void activation();

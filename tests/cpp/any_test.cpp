@@ -74,7 +74,7 @@ TEST(AnyArm, is_the_arm_that_it_holds) {
   check(Position<3>{}, CoupledArm<kOpen>(coupled_panda()));
 }
 
-/// By make_arm() and make_planar_arm(), which any_arm() and any_planar_arm() of arms.hpp call.
+/// any_arm() and any_planar_arm() of arms.hpp call make_arm() and make_planar_arm().
 TEST(AnyArm, is_made_of_a_chain_or_of_lengths) {
   for (const int dof : {2, 4, 9}) {
     const Vector<kOpen> lengths = Random(1).uniform(dof, 0.5, 1.5);

@@ -181,7 +181,7 @@ class Distances : public ::testing::Test {
     const Nearest<Scalar> after = nearest(moved(first, h * v), second);
     const Nearest<Scalar> before = nearest(moved(first, -h * v), second);
     const Scalar turn = (after.normal - before.normal).norm();
-    if (turn > Scalar(0.1)) return;  // An edge between: the normal is discontinuous here.
+    if (turn > Scalar(0.1)) return;  // At an edge, the normal is discontinuous.
     ++smooth_;
     const Scalar slope = (after.distance - before.distance) / (2 * h);
     ASSERT_NEAR(slope, found.normal.dot(v), turn + tolerance / h) << where;

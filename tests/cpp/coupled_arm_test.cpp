@@ -32,8 +32,8 @@ constexpr int kOpen = Eigen::Dynamic;
   return joint;
 }
 
-/// From a random first joint on, every third joint follows another joint, before or after it in the chain. The middle
-/// of its range corresponds to the middle of the range of its leader.
+/// From a random joint on, every third joint follows another joint (its leader), which is before or after the follower
+/// in the chain. The middle of the range of the leader moves the follower to the middle of its range.
 [[nodiscard]] Chain<> random_coupled_chain(Random& random) {
   Chain<> chain;
   for (int i = 0; i < 9; ++i) chain.joints.push_back(random_joint(random));

@@ -512,7 +512,8 @@ TEST(Guard, keeps_two_arms_apart) {
   expect_arms_apart<16, Level::kAcceleration>(true);
 }
 
-/// Postures of a motion that a wall and the arm's own shapes block, for a number of joints at compile time or run time.
+/// Postures of a motion. A wall and the arm's own shapes block this motion. The number of joints is known at compile
+/// time or at run time.
 template <int N, int Joints, Level kLevel>
 [[nodiscard]] std::vector<Vector<N>> blocked_motion(const Tree<>& tree, const Vector<N>& q, double y_most, double jerk,
                                                     int& pressed) {
@@ -601,7 +602,7 @@ TEST(Guard, has_a_row_for_a_joint_that_follows_with_a_negative_ratio) {
   guard.require_clear(limits, state, Vector<1>::Zero());
   const auto rows = guard.rows(limits, state);
   ASSERT_GE(rows.count, 1);
-  EXPECT_LT(rows.g(0, 0), 0.0);  // The leader must not decrease much.
+  EXPECT_LT(rows.g(0, 0), 0.0);  // The row limits the decrease of the leader.
 }
 
 TEST(Guard, names_the_invalid_argument) {

@@ -184,7 +184,8 @@ TEST(Jerk, a_joint_stops_as_quickly_as_its_bounds_allow) {
     Vector<1> last(random.uniform(-0.999, 0.999) * A);
     if (J * kTick >= 2.0 * A) continue;
 
-    // The jerk of the stop is −J until −peak, then 0, then J, if the velocity is positive after a is reduced to zero.
+    // If the velocity is positive after a is reduced to zero, the jerk of the stop is −J until the acceleration is
+    // −peak, then 0, then J.
     const double s = state.qd(0) + last(0) * std::abs(last(0)) / (2.0 * J) < 0.0 ? -1.0 : 1.0;
     const double v = s * state.qd(0);
     const double a = s * last(0);

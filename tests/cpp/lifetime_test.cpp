@@ -26,7 +26,7 @@ TYPED_TEST(Lifetimes, of_a_gram_matrix_spans_its_jacobian) {
   EXPECT_TRUE((std::is_constructible_v<Gram, const Damping&, const J&>));
   EXPECT_FALSE((std::is_constructible_v<Gram, const Damping&, J>));
   EXPECT_FALSE((std::is_constructible_v<Gram, const Damping&, const J>));
-  EXPECT_FALSE((std::is_constructible_v<Gram, const Damping&, Transposed>));  // Would be converted to a temporary.
+  EXPECT_FALSE((std::is_constructible_v<Gram, const Damping&, Transposed>));  // The conversion needs a temporary.
 
   // The damping is two numbers, of which Gram keeps a copy.
   J jacobian = J::Identity();

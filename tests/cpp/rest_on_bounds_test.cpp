@@ -50,7 +50,7 @@ template <typename Scalar>
   return q;
 }
 
-/// In double, one type, whose trackers other tests use too.
+/// In double, the arm type whose trackers are compiled for other tests too.
 template <typename Scalar>
 [[nodiscard]] auto arm_of(const Chain<>& chain) {
   if constexpr (std::is_same_v<Scalar, double>) {

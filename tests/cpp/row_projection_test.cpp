@@ -77,7 +77,7 @@ TEST(RowProjection, is_optimal) {
   expect_optimal<float>(2e-2);
 }
 
-/// Contradictory rows admit no motion: the projection reports it and returns finite numbers.
+/// Contradictory rows admit no motion: the projection reports the contradiction and returns finite numbers.
 TEST(RowProjection, reports_contradictory_rows) {
   Rows<7, 2> rows;
   rows.g.col(0) = Vector<7>::Ones();

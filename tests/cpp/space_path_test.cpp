@@ -54,7 +54,7 @@ void expect_exact_derivatives(const Path& path, const std::vector<double>& steps
   }
 }
 
-/// At rest at both ends and outside, from the origin, without a step of xdd.
+/// The path starts at the origin, is at rest at both ends and outside, and has no step of xdd.
 template <typename Path>
 void expect_smooth_ends(const Path& path) {
   using Space = typename Path::Space;

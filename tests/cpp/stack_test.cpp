@@ -328,7 +328,7 @@ void expect_no_interference() {
                   (levels.first * (two.u - one.u)).norm() / unit, (levels.second * (three.u - two.u)).norm() / unit});
     const Box<7> box = limits.box(state, last);
     EXPECT_TRUE(box.contains(three.u));
-    // Rows are satisfied as far as the motion without jerk satisfies them.
+    // The excess over a row is at most the excess of the motion without jerk, or of the first level.
     const Vector<7> steady = kLevel == Level::kAcceleration ? last : Vector<7>(state.qd + kTick * last);
     const Vector<7> from = rows.near(box.nearest(steady), box);
     for (int k = 0; k < rows.count; ++k) {

@@ -47,8 +47,8 @@ struct Worst {
   double displacement = 0.0;  ///< Distance of a posture beyond the displacements of StopDisplacement [rad].
 };
 
-/// Smallest s·way + t·tick + rest of a trajectory, minus the displacement of a posture, along one direction g of joint
-/// space. Positive if the posture is outside.
+/// Smallest coordinate along g of the displacements s · line + t · ramp_correction + r, with s and t in [0, 1] and r in
+/// [low, high], minus the coordinate of the displacement `place`. Positive if `place` is outside.
 [[nodiscard]] double beyond(const StopDisplacement<Eigen::Dynamic>& displacement, const Eigen::VectorXd& g,
                             const Eigen::VectorXd& place) {
   const double least = std::min(g.dot(displacement.line), 0.0) + std::min(g.dot(displacement.ramp_correction), 0.0) +

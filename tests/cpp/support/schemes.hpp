@@ -12,7 +12,7 @@ namespace fpbm::test {
 
 /// Parameters of a scheme.
 struct Takes {
-  bool acceleration;            ///< The level: acceleration or velocity.
+  bool acceleration;            ///< Whether the scheme is at acceleration level.
   std::optional<double> alpha;  ///< Weight of WMVN in the balance. Empty if the caller chooses it.
   bool feedback;
   bool weights;

@@ -17,7 +17,7 @@ template <typename Derived>
 
 /// Every scheme of the paper, by its parameters. Parameters that a scheme does not have are neutral.
 struct Law {
-  bool acceleration = false;  ///< The level: the law gives qdd, or qd.
+  bool acceleration = false;  ///< Whether the law gives qdd. Otherwise, the law gives qd.
   double alpha = 0.0;         ///< Weight of the weighted pseudoinverse: 0 in MVN and MAN, 1 in WMVN at both levels.
   double k = 0.0;             ///< Feedback gain at velocity level.
   double k1 = 0.0;            ///< Feedback gains at acceleration level.

@@ -1,7 +1,7 @@
 #include "support/compiled_tracker_members.hpp"
 #include "support/panda_answers.hpp"
 
-/// Arms of fixed size: with one joint more than task rows, with none more, and with several more.
+/// Arms of fixed size. The number of joints exceeds the number of task rows by one, by zero, and by more than one.
 namespace fpbm::test {
 
 template class CompiledTracker<SerialArm<7>, Pose, AccelerationScheme<7>>;

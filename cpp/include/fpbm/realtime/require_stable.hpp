@@ -33,8 +33,8 @@ void require_stable_gains(const NamedGains<Scalar>& gains, const TickOfGains<Sca
   const auto& [name1, k1, name2, k2] = gains;
   const Scalar h = tick.dt;
   const Scalar integral = tick.integral_gain;
-  // The gains share · k₁ and share² · k₂ (velocity level: share · k) decrease the decay rate of the error by the factor
-  // `share`, without another change of its motion.
+  // The gains share · k₁ and share² · k₂ (velocity level: share · k) scale the time of the error dynamics: the error
+  // decays more slowly by the factor `share`.
   const auto stable = [&](Scalar share, Scalar ki) {
     if constexpr (kLevel == Level::kVelocity) {
       const Scalar x1 = share * gains.k2 * h;
