@@ -22,7 +22,7 @@ CXX_SOURCES = $(shell find cpp python tests bench examples web ros2 -name '*.[ch
 
 help:
 	@echo 'make demo             reproduce the paper: tables, figures and a report in ./$(OUT)'
-	@echo 'make page             a page to drag an arm in, with the library in WebAssembly: build/web/page.html'
+	@echo 'make page             an interactive page with the library in WebAssembly: build/web/page.html'
 	@echo 'make test             build and run the C++ tests and the Python tests'
 	@echo 'make test-view        the tests of the viewer and the page in a browser; make test skips them without one'
 	@echo 'make homes            fit capsules to the meshes of every robot of the tests, and try its home posture'
@@ -49,7 +49,7 @@ help:
 	@echo 'make docs             build the documentation in ./build/docs, its notebooks executed'
 	@echo 'make notebooks        only the notebooks, executed, as .ipynb in ./build/notebooks'
 	@echo 'make test-docs        run every code block of the README and the documentation'
-	@echo 'make sdist, wheel     the source distribution; from it, offline, a wheel for many a Linux, tried on its own'
+	@echo 'make sdist, wheel     the source distribution; a wheel for Linux, built offline from the source distribution and tested'
 
 demo: $(VENV)/package
 	$(BIN)/fpbm-cpp reproduce --out $(OUT)

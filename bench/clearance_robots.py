@@ -66,7 +66,7 @@ class Meshes:
             self.pin.framesForwardKinematics(self.model, self.data, q)
             off = np.abs(self.data.oMf[self.model.getFrameId(tip)].homogeneous - arm.forward(q)).max()
             if off > 1e-9:
-                raise SystemExit(f"{tip}: Pinocchio places it elsewhere, by {off:.1e}")
+                raise SystemExit(f"{tip}: the pose differs from the pose by Pinocchio by {off:.1e}")
 
     def among(self, obstacles: Sequence[Obstacle]) -> Check:
         return Check(*(self._placed(geometry, obstacles) for geometry in (self.hulls, self.geometry)))

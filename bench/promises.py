@@ -50,7 +50,7 @@ def rows(results: Results) -> list[list[str]]:
     for kind, lanes, bar in (("avx2", "in 4 lanes, AVX2", 0.20), ("avx512", "in 8 lanes, AVX-512", 0.14)):
         share = results.ratio(fpbm, "pinocchio", kind)
         old = share / OLD_STEP if share else None
-        add(f"Panda pose step of FPBM, an arm {lanes}: share of a step of 8e7cfab, reckoned", old, bar, "{:.2f}")
+        add(f"Panda pose step of FPBM, an arm {lanes}: ratio to a step of 8e7cfab, computed", old, bar, "{:.2f}")
     for case in ("panda/pose/acceleration", "panda/pose/jerk", "panda/position/acceleration", "panda/position/jerk"):
         shares = [results.ratio(f"limited/{case}", qp) for qp in ("eiquadprog_rt", "eiquadprog_fast")]
         share = max((each for each in shares if each), default=None)
@@ -59,7 +59,7 @@ def rows(results: Results) -> list[list[str]]:
     for job, before in OLD_INSTRUCTIONS.items():
         count, bar = instructions(results, job), 0.75 if job.endswith("tick") else 0.8
         share = count / before if count else None
-        add(f"instructions of {job.replace('/', ' ')}: share of those before", share, bar, "{:.2f}")
+        add(f"instructions of {job.replace('/', ' ')}: ratio to an earlier version", share, bar, "{:.2f}")
     for robot, words in (("two_pandas", "two Pandas"), ("g1_upper_body", "G1's upper body")):
         for part, meaning in (("J", "J"), ("J_and_Jd", "J and J̇"), ("J_and_Jd_qd", "J and J̇q̇")):
             share = results.ratio(f"trees/{robot}/{part}", "pinocchio")

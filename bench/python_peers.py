@@ -275,7 +275,7 @@ def at_once(ours: Row) -> Row:
     stacked = (np.concatenate([np.stack(each)] * times)[:MANY] for each in zip(*ours.inputs, strict=True))
     row = Row(f"{ours.name}_many", ours.step, [Input(*stacked)], MANY)
     if row.step(row.inputs[0])[:STATES].tobytes() != np.stack([ours.step(each) for each in ours.inputs]).tobytes():
-        raise SystemExit(f"{row.name} answers otherwise")
+        raise SystemExit(f"{row.name}: the result differs from the result of fpbm_cpp")
     return row
 
 
@@ -286,7 +286,7 @@ def agreeing(name: str, step: Callable[[Input], Array], ours: Row, tolerance: fl
         expected = ours.step(given)
         worst = max(worst, float(np.linalg.norm(step(given) - expected) / np.linalg.norm(expected)))
     if not worst <= tolerance:
-        raise SystemExit(f"{name} answers otherwise, by {worst:.1e}")
+        raise SystemExit(f"{name}: the result differs from the result of fpbm_cpp by {worst:.1e}")
     return Row(name, step, ours.inputs)
 
 

@@ -171,7 +171,7 @@ def over_median(results: Results) -> list[str]:
         job, empty = row["p99.9"] / row["p50"], row["empty_p99.9"] / row["empty_p50"]
         return [row["name"], f"{job:.2f}", f"{empty:.2f}", f"{job / empty:.2f}"]
 
-    where = "an isolated core" if results.values.get("isolated") else "a shared core, so that no bar applies"
+    where = "an isolated core" if results.values.get("isolated") else "a shared core, so no bar applies"
     return [
         f"p99.9 over p50 in warm caches. On an isolated core the bar is 1.5; this run was on {where}.",
         "",
@@ -393,7 +393,7 @@ def chart(results: Results, file: Path) -> None:
         label = row["name"].replace("/", " ")
         tail.plot(columns, [row[c] / 1e3 for c in columns], color=colour, marker=marker, label=label)
     tail.set_yscale("log")
-    tail.set(ylabel="time of a call [µs]", title="Tails in a warm loop, each answer waited for")
+    tail.set(ylabel="time of a call [µs]", title="Tails in a warm loop, each result read before the next call")
     tail.legend(fontsize=8)
 
     for kind, label, colour, marker in (

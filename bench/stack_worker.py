@@ -187,7 +187,7 @@ def main() -> None:
     alone = agreement(robot, name, Options(lower=False, limits=False))
     whole = agreement(robot, name, Options(limits=False))
     if not alone < TOLERANCE:
-        raise SystemExit(f"{name} moves the tip otherwise, by {alone:.1e}")
+        raise SystemExit(f"{name}: the motion of the tip differs by {alone:.1e}")
     solver = PEERS[name].make(robot, Options())
     rows, ratios = run(robot, solver)
     result = {"alone": alone, "whole": whole, "acceleration": solver.acceleration, "rows": rows, "ratios": ratios}

@@ -4,7 +4,7 @@
 #   bare.sh COMMAND ...
 set -eu
 if ! unshare --map-root-user --net --mount true 2> /dev/null; then
-    echo "No namespaces to be had here: network and Eigen stay in sight of $1." >&2
+    echo "Namespaces are not available: $1 has access to the network and to Eigen." >&2
     exec "$@"
 fi
 # shellcheck disable=SC2016 # Expanded by the inner shell.

@@ -17,7 +17,7 @@ if test "$found" != "$expected"; then
     exit 1
 fi
 if tar -tzf "$archive" | grep -E '\.(png|pdf|so|pyd|o|pyc)$'; then
-    echo "$archive holds what is made, not written" >&2
+    echo "$archive contains generated files" >&2
     exit 1
 fi
 echo "$archive has $(stat --format %s "$archive") bytes"

@@ -35,13 +35,13 @@ void locked(Robot& robot) {
   robot.tick(1000);
   stand_in::locked = false;
   robot.tick(500);
-  check(robot.speed() == 0.0 && distance(robot.tip(), start) > 0.01, "locked for good: speed at the end [rad/s]",
+  check(robot.speed() == 0.0 && distance(robot.tip(), start) > 0.01, "locked permanently: speed at the end [rad/s]",
         robot.speed());
   (void)robot.said<DiagnosticArray>("/diagnostics");
-  check(said.last.status.at(0).level == DiagnosticStatus::ERROR, "locked for good: level of the diagnostics",
+  check(said.last.status.at(0).level == DiagnosticStatus::ERROR, "locked permanently: level of the diagnostics",
         said.last.status.at(0).level);
   robot.deactivate();
-  check(robot.activate(), "locked for good: activated again", 1);
+  check(robot.activate(), "locked permanently: activated again", 1);
   robot.watched = true;
 }
 

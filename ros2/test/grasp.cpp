@@ -64,8 +64,9 @@ double largest_error(TwoArms& robot, int jumps, unsigned int seed) {
 
 void within_limits(const TwoArms& robot) {
   check(robot.excess < 1e-9, "grasp: position, velocity beyond a limit [rad, rad/s]", robot.excess);
-  check(robot.acceleration_excess < 1e-6, "grasp: acceleration beyond its limit, of this", robot.acceleration_excess);
-  check(robot.jerk_excess < 1e-3, "grasp: jerk beyond its limit, of this", robot.jerk_excess);
+  check(robot.acceleration_excess < 1e-6, "grasp: ratio of the acceleration excess to the limit",
+        robot.acceleration_excess);
+  check(robot.jerk_excess < 1e-3, "grasp: ratio of the jerk excess to the limit", robot.jerk_excess);
   check(robot.allocated == 0, "grasp: allocations", static_cast<double>(robot.allocated));
 }
 

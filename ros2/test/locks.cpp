@@ -35,9 +35,9 @@ void one_by_one() {
   }
   check(fastest > 0.3, "locks one by one: speed [rad/s]", fastest);
   check(robot.excess < 1e-9, "locks one by one: velocity beyond a limit [rad/s]", robot.excess);
-  check(robot.acceleration_excess < 1e-6, "locks one by one: acceleration beyond its limit, of this",
+  check(robot.acceleration_excess < 1e-6, "locks one by one: ratio of the acceleration excess to the limit",
         robot.acceleration_excess);
-  check(robot.jerk_excess < 1e-3, "locks one by one: jerk beyond its limit, of this", robot.jerk_excess);
+  check(robot.jerk_excess < 1e-3, "locks one by one: ratio of the jerk excess to the limit", robot.jerk_excess);
   const auto& said = robot.said<DiagnosticArray>("/diagnostics").last.status.at(0);
   check(said.level == DiagnosticStatus::WARN, "locks one by one: level of the diagnostics", said.level);
   check(robot.allocated == 0, "locks one by one: allocations", static_cast<double>(robot.allocated));
@@ -45,7 +45,7 @@ void one_by_one() {
 
 void for_good() {
   Robot robot;
-  check(robot.load() && robot.activate(), "a joint locked for good: activated", 1);
+  check(robot.load() && robot.activate(), "a joint locked permanently: activated", 1);
   const Transform<> start = robot.tip();
   for (int i = 0; i < 300; ++i) {
     swing(robot, start, i);
@@ -56,13 +56,13 @@ void for_good() {
   robot.tick(100);
   (void)logged("");
   const auto& said = robot.said<DiagnosticArray>("/diagnostics").last.status.at(0);
-  check(said.level == DiagnosticStatus::ERROR, "a joint locked for good: level of the diagnostics", said.level);
-  check(logged("panda_joint3"), "a joint locked for good: named", 1);
+  check(said.level == DiagnosticStatus::ERROR, "a joint locked permanently: level of the diagnostics", said.level);
+  check(logged("panda_joint3"), "a joint locked permanently: named", 1);
   robot.tick(1);
   const auto after = robot.command;
   robot.tick(500);
-  check(robot.command == after, "a joint locked for good: stays where it was last commanded", 1);
-  check(robot.allocated == 0, "a joint locked for good: allocations", static_cast<double>(robot.allocated));
+  check(robot.command == after, "a joint locked permanently: keeps its last command", 1);
+  check(robot.allocated == 0, "a joint locked permanently: allocations", static_cast<double>(robot.allocated));
 }
 
 void at_deactivation() {

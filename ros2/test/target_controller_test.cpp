@@ -133,9 +133,9 @@ void targets() {
   faults(robot);
   check(robot.allocated == 0, "every activation and tick: allocations", static_cast<double>(robot.allocated));
   check(robot.excess < 1e-9, "every tick: position, velocity beyond a limit [rad, rad/s]", robot.excess);
-  check(robot.acceleration_excess < 1e-6, "every tick: acceleration beyond its limit, of this",
+  check(robot.acceleration_excess < 1e-6, "every tick: ratio of the acceleration excess to the limit",
         robot.acceleration_excess);
-  check(robot.jerk_excess < 1e-3, "every tick: jerk beyond its limit, of this", robot.jerk_excess);
+  check(robot.jerk_excess < 1e-3, "every tick: ratio of the jerk excess to the limit", robot.jerk_excess);
   std::printf("%lld ticks\n", static_cast<long long>(robot.calls));
 }
 

@@ -40,9 +40,9 @@ double change(const TwoArms::Joints& a, const TwoArms::Joints& b, std::size_t fi
 
 void within_limits(const TwoArms& robot, const std::string& what) {
   check(robot.excess < 1e-9, (what + ": position, velocity beyond a limit [rad, rad/s]").c_str(), robot.excess);
-  check(robot.acceleration_excess < 1e-6, (what + ": acceleration beyond its limit, of this").c_str(),
+  check(robot.acceleration_excess < 1e-6, (what + ": ratio of the acceleration excess to the limit").c_str(),
         robot.acceleration_excess);
-  check(robot.jerk_excess < 1e-3, (what + ": jerk beyond its limit, of this").c_str(), robot.jerk_excess);
+  check(robot.jerk_excess < 1e-3, (what + ": ratio of the jerk excess to the limit").c_str(), robot.jerk_excess);
   check(robot.allocated == 0, (what + ": allocations").c_str(), static_cast<double>(robot.allocated));
 }
 
