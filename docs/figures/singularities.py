@@ -110,7 +110,7 @@ def nakamura_hanafusa(motion: Motion) -> Resolve:
 
 
 TREATMENTS: dict[str, tuple[Callable[[Motion], Resolve], dict[str, Any]]] = {
-    "the law as it is": (library, {"color": "0.55", "lw": 1.2, "ls": (0, (1, 1))}),
+    "no damping": (library, {"color": "0.55", "lw": 1.2, "ls": (0, (1, 1))}),
     "constant damping": (wampler, {"color": "#E69F00", "lw": 1.4}),
     "damping by manipulability": (nakamura_hanafusa, {"color": "#009E73", "lw": 1.4, "ls": (0, (6, 1.5))}),
     "fpbm_cpp": (lambda motion: library(motion, singular_radius=RADIUS), {"color": "#0072B2", "lw": 2.0}),
@@ -180,7 +180,7 @@ def through_the_middle() -> Motion:
         error = np.concatenate([wanted[:3, 3] - tip[:3, 3], fp.rotation_vector(wanted[:3, :3] @ tip[:3, :3].T)])
         q0[in_plane] += np.linalg.lstsq(arm.jacobian(q0, task="pose")[:, in_plane], error, rcond=None)[0]
     path = fp.Line(way, 4.0, time_law="quintic").with_rotation([0, 0, 0])
-    return Motion("A Panda, on a line right through the middle", arm, "pose", [1] * 7, q0, singular, path, 1.0)
+    return Motion("A Panda, on a line through a singular posture", arm, "pose", [1] * 7, q0, singular, path, 1.0)
 
 
 def draw(axes: Any, motion: Motion) -> None:
