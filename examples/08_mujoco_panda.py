@@ -59,9 +59,9 @@ def phase(t: float) -> str:
 
 def reference(t: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Pose, velocity and acceleration of the target [m, s]. The orientation is constant."""
-    way, velocity, acceleration = CIRCLE.sample(t)  # At rest after the end of the circle.
+    displacement, velocity, acceleration = CIRCLE.sample(t)  # At rest after the end of the circle.
     x = START.copy()
-    x[:3, 3] += way + AWAY.get(phase(t), (0, 0, 0))
+    x[:3, 3] += displacement + AWAY.get(phase(t), (0, 0, 0))
     return x, np.append(velocity, np.zeros(3)), np.append(acceleration, np.zeros(3))
 
 

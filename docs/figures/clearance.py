@@ -48,8 +48,13 @@ def what_is_around() -> fp.Clearance:
 
 def motions(clearance: fp.Clearance) -> dict[str, fp.Run]:
     tip = PANDA.forward(START)[:3, 3]
-    ways = [[0, 0, TOP + 0.12 - tip[2]], [0, -2 * tip[1], 0], [0, 0, 0.35]]  # Down, across, up.
-    path = fp.Sequence([fp.Line(way, seconds, time_law="quintic") for way, seconds in zip(ways, (2.0, 4.0, 2.0))])
+    displacements = [[0, 0, TOP + 0.12 - tip[2]], [0, -2 * tip[1], 0], [0, 0, 0.35]]  # Down, across, up.
+    path = fp.Sequence(
+        [
+            fp.Line(displacement, seconds, time_law="quintic")
+            for displacement, seconds in zip(displacements, (2.0, 4.0, 2.0))
+        ]
+    )
     scheme = fp.FPBM(0.6, np.ones(7), k1=10, k2=25, null_damping=2)
     kept = {"without a clearance": None, "with a clearance": clearance}
     return {name: fp.track(PANDA, path, scheme, START, clearance=each, hold=0.5) for name, each in kept.items()}

@@ -51,9 +51,9 @@ def off_line(p: np.ndarray) -> float:
     start = PANDA.forward(READY)[:3, 3]
     worst = 0.0
     for i, (jump, end) in enumerate(zip(JUMPS, np.cumsum(JUMPS, axis=0), strict=True)):
-        way = p[i * steps : (i + 1) * steps] - (start + end - jump)
-        along = np.outer(way @ jump, jump) / (jump @ jump)
-        worst = max(worst, float(np.linalg.norm(way - along, axis=1).max()))
+        displacement = p[i * steps : (i + 1) * steps] - (start + end - jump)
+        along = np.outer(displacement @ jump, jump) / (jump @ jump)
+        worst = max(worst, float(np.linalg.norm(displacement - along, axis=1).max()))
     return worst
 
 

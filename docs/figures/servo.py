@@ -21,12 +21,12 @@ from fpbm_cpp.viewer import Servo
 READY = [0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785]
 
 
-def drag(servo: Servo, way: list[float], seconds: float) -> None:
+def drag(servo: Servo, displacement: list[float], seconds: float) -> None:
     """Move the handle evenly, as far as this from where it is [m], 20 places a second."""
     start = servo.target
     for share in np.linspace(0.0, 1.0, round(20 * seconds) + 1)[1:]:
         x = start.copy()
-        x[:3, 3] += share * np.array(way)
+        x[:3, 3] += share * np.array(displacement)
         servo.target = x
         time.sleep(0.05)
 

@@ -154,10 +154,10 @@ def to_the_edge(beyond: float = 0.02, back: bool = True) -> Motion:
     q0 = np.array([0.3, 0.9, -0.5, 0.8])
     start = arm.forward(q0)
     angle = np.arctan2(start[1], start[0]) + 0.5
-    way = (4.0 + beyond) * np.array([np.cos(angle), np.sin(angle)]) - start
-    path = fp.Line(way, 4.0, time_law="quintic")
+    displacement = (4.0 + beyond) * np.array([np.cos(angle), np.sin(angle)]) - start
+    path = fp.Line(displacement, 4.0, time_law="quintic")
     if back:
-        path = path.then(fp.Line(-way, 4.0, time_law="quintic"))
+        path = path.then(fp.Line(-displacement, 4.0, time_law="quintic"))
     title = "Four links, to 2 cm beyond the workspace and back"
     singular = np.array([angle, 0, 0, 0])
     return Motion(title, arm, "position", [1, 2, 3, 4], q0, singular, path, 2.0 if back else 30.0, reach=4.0)
@@ -170,16 +170,16 @@ def through_the_middle() -> Motion:
     """
     arm = fp.SerialArm.preset("panda")
     singular = np.array([0, 0, 0, -1.6, 0, 3.330367060928, 0])
-    way = np.array([0.1, 0.0, -0.3])
+    displacement = np.array([0.1, 0.0, -0.3])
     wanted = arm.forward(singular)
-    wanted[:3, 3] -= way / 2
+    wanted[:3, 3] -= displacement / 2
     q0 = singular.copy()
     in_plane = [1, 3, 5]
     for _ in range(50):  # Newton, by the three joints that move the tip in that plane.
         tip = arm.forward(q0)
         error = np.concatenate([wanted[:3, 3] - tip[:3, 3], fp.rotation_vector(wanted[:3, :3] @ tip[:3, :3].T)])
         q0[in_plane] += np.linalg.lstsq(arm.jacobian(q0, task="pose")[:, in_plane], error, rcond=None)[0]
-    path = fp.Line(way, 4.0, time_law="quintic").with_rotation([0, 0, 0])
+    path = fp.Line(displacement, 4.0, time_law="quintic").with_rotation([0, 0, 0])
     return Motion("A Panda, on a line through a singular posture", arm, "pose", [1] * 7, q0, singular, path, 1.0)
 
 

@@ -50,7 +50,7 @@ class Controller {
   [[nodiscard]] bool refuses(const std::string& text) { return !configure() && logged(text); }
 
   /// Sum of the displacements of all joints in 0.3 s after a twist [rad]; -1 if the activation fails.
-  double way() {
+  double displacement() {
     q.resize(stand_in::parameters.joints.size());
     const std::vector<double> start = q;
     std::vector<stand_in::Lock> locks(2 * q.size());
@@ -70,9 +70,9 @@ class Controller {
         .lock()
         ->hear(twist);
     for (int i = 0; i < 300; ++i) (void)controller_->update(rclcpp::Time(), rclcpp::Duration(0, 1000000));
-    double way = 0.0;
-    for (std::size_t i = 0; i < q.size(); ++i) way += std::abs(q[i] - start[i]);
-    return way;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < q.size(); ++i) sum += std::abs(q[i] - start[i]);
+    return sum;
   }
   /// Tip pose that the controller publishes.
   fpbm::Transform<> tip() {
@@ -97,8 +97,9 @@ void every_preset() {
   for (const auto& preset : kAll) {
     const Given own = given(preset.name);
     Controller controller(own);
-    const double way = controller.configure() ? controller.way() : -1.0;
-    check(way > 0.001 && way < 1.0, (own.arm + ": displacement of all joints in 0.3 s [rad]").c_str(), way);
+    const double displacement = controller.configure() ? controller.displacement() : -1.0;
+    check(displacement > 0.001 && displacement < 1.0, (own.arm + ": displacement of all joints in 0.3 s [rad]").c_str(),
+          displacement);
     Controller short_of_one(own);
     stand_in::parameters.joints.pop_back();
     check(short_of_one.refuses(own.joints.back()), (own.arm + ": refused with a joint too few, which is named").c_str(),
@@ -116,7 +117,7 @@ void frames() {
   const Given panda = given("panda");
   Controller root(panda);
   stand_in::parameters.base_frame = "base_link";
-  check(root.configure() && root.way() > 0.001, "base_link, the parent of base: configured", 1);
+  check(root.configure() && root.displacement() > 0.001, "base_link, the parent of base: configured", 1);
   fpbm::SerialArm<7> arm(panda.chain);
   fpbm::Kinematics<fpbm::Pose, 7> kinematics;
   arm.kinematics(fpbm::Vector<7>(root.q.data()), kinematics);
@@ -180,7 +181,7 @@ void limits() {
   check(unbounded.refuses("limits.acceleration"), "no bound on acceleration: refused", 1);
   Controller bounded(no_preset);
   stand_in::parameters.limits.acceleration.assign(7, 5.0);
-  check(bounded.configure() && bounded.way() > 0.001, "no preset, limits.acceleration: configured", 1);
+  check(bounded.configure() && bounded.displacement() > 0.001, "no preset, limits.acceleration: configured", 1);
 }
 
 /// The first five joints of a Panda. A pose has six rows: the motion is damped at all times.
@@ -191,7 +192,7 @@ void too_few_joints() {
   shorter.joints.resize(5);
   Controller controller(shorter);
   stand_in::parameters.limits.acceleration.assign(5, 5.0);
-  check(controller.configure() && controller.way() > 0.001, "an arm of 5 joints: moves", 1);
+  check(controller.configure() && controller.displacement() > 0.001, "an arm of 5 joints: moves", 1);
 }
 
 /// A Panda whose last joint follows the previous joint.
@@ -203,7 +204,7 @@ void mimic() {
   Controller controller(geared);
   stand_in::parameters.limits.acceleration.assign(6, 5.0);
   check(controller.configure(), "a mimic joint: configured", 1);
-  check(controller.way() > 0.001, "a mimic joint: activated", 1);
+  check(controller.displacement() > 0.001, "a mimic joint: activated", 1);
   fpbm::CoupledArm<6> arm(geared.chain);
   fpbm::Kinematics<fpbm::Pose, 6> kinematics;
   arm.kinematics(fpbm::Vector<6>(controller.q.data()), kinematics);

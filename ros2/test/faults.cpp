@@ -81,9 +81,9 @@ void states(Robot& robot) {
   check(robot.activate(), "activated again", 1);
   const auto stands = robot.q;
   robot.tick(500);
-  double way = 0.0;
-  for (std::size_t i = 0; i < Robot::kDof; ++i) way = std::max(way, std::abs(robot.q[i] - stands[i]));
-  check(way < 1e-9, "activated again: displacement from the measured posture [rad]", way);
+  double displacement = 0.0;
+  for (std::size_t i = 0; i < Robot::kDof; ++i) displacement = std::max(displacement, std::abs(robot.q[i] - stands[i]));
+  check(displacement < 1e-9, "activated again: displacement from the measured posture [rad]", displacement);
   Transform<> elsewhere = robot.tip();
   elsewhere.p(1) += 0.05;
   robot.hear("~/target_pose", pose_message(elsewhere, 31.0));

@@ -69,8 +69,8 @@ void calls_too_soon() {
     past.emplace_back(t, robot.command);
     while (t - past.front().first > 0.05) past.pop_front();
     for (std::size_t j = 0; j < Robot::kDof && t > 0.06; ++j) {
-      const double way = std::abs(robot.command[j] - past.front().second[j]);
-      fastest = std::max(fastest, way / (t - past.front().first + 2e-3) / bounds[j]);
+      const double displacement = std::abs(robot.command[j] - past.front().second[j]);
+      fastest = std::max(fastest, displacement / (t - past.front().first + 2e-3) / bounds[j]);
     }
   }
   check(fastest > 0.9 && fastest < 1.0, "calls too soon: mean velocity in 50 ms, of its bound", fastest);

@@ -27,10 +27,10 @@ using stand_in::Robot;
 
 /// Pose to which a person leads the tip at t [s].
 Transform<> hand(const Transform<>& start, double t) {
-  const double way = std::pow(std::sin(1.5 * std::min(t, 2.0)), 2);
+  const double displacement = std::pow(std::sin(1.5 * std::min(t, 2.0)), 2);
   Transform<> pose = start;
-  pose.p += fpbm::Vector<3>(0.02, 0.1, 0.05) * way;
-  pose.R = fpbm::rotation(fpbm::Vector<3>(0.0, 0.0, 0.3 * way)) * pose.R;
+  pose.p += fpbm::Vector<3>(0.02, 0.1, 0.05) * displacement;
+  pose.R = fpbm::rotation(fpbm::Vector<3>(0.0, 0.0, 0.3 * displacement)) * pose.R;
   return pose;
 }
 
@@ -67,8 +67,9 @@ void twists(Robot& robot) {
     robot.tick();
   }
   robot.tick(3000);
-  const double way = robot.tip().p(2) - start.p(2);
-  check(std::abs(way + 0.05 * 1.15) < 0.004, "twists: displacement down in 1 s and until the timeout [m]", way);
+  const double displacement = robot.tip().p(2) - start.p(2);
+  check(std::abs(displacement + 0.05 * 1.15) < 0.004, "twists: displacement down in 1 s and until the timeout [m]",
+        displacement);
   check(robot.speed() < 1e-4, "twists: speed at the end [rad/s]", robot.speed());
 }
 

@@ -21,6 +21,16 @@ namespace fpbm::test::guard_laws {
 namespace {
 
 constexpr int kOpen = Eigen::Dynamic;
+
+/// MVN, or MAN with null-space damping at acceleration level.
+template <Level kLevel, int N>
+[[nodiscard]] auto least_norm_scheme() {
+  if constexpr (kLevel == Level::kVelocity) {
+    return MVN<N>();
+  } else {
+    return Balanced<N>(0.0, UnitWeights{}, NullSpace<N>().with_damping(2.0));
+  }
+}
 constexpr double kTick = 1e-3;
 constexpr double kSlack = 1e-9;
 
@@ -456,13 +466,7 @@ void expect_arms_apart(bool with_torso) {
   const Robot<N> robot(tree);
   constexpr double kMargin = 0.01;
   const Limits<kLevel, N> limits(robot.limits(), kTick);
-  const auto scheme = [] {
-    if constexpr (kLevel == Level::kVelocity) {
-      return MVN<N>();
-    } else {
-      return Balanced<N>(0.0, UnitWeights{}, NullSpace<N>().with_damping(2.0));
-    }
-  }();
+  const auto scheme = least_norm_scheme<kLevel, N>();
   const TaskGains<> gains = kLevel == Level::kVelocity ? TaskGains<>(5.0) : TaskGains<>(10.0, 25.0);
   const Stack stack(
       TaskLevel(PositionTask<>{frame_of(tree, "right_tip"), gains}, PositionTask<>{frame_of(tree, "left_tip"), gains}),
@@ -521,13 +525,7 @@ template <int N, int Joints, Level kLevel>
   auto bounds = robot.limits();
   bounds.jerk = jerk * bounds.acceleration;
   const Limits<kLevel, N> limits(bounds, kTick);
-  const auto scheme = [] {
-    if constexpr (kLevel == Level::kVelocity) {
-      return MVN<N>();
-    } else {
-      return Balanced<N>(0.0, UnitWeights{}, NullSpace<N>().with_damping(2.0));
-    }
-  }();
+  const auto scheme = least_norm_scheme<kLevel, N>();
   const TaskGains<> gains = kLevel == Level::kVelocity ? TaskGains<>(5.0) : TaskGains<>(10.0, 25.0);
   const Stack stack(PositionTask<>{frame_of(tree, "tip"), gains}, PostureTask<N>{gains});
   using Shapes = Guard<kLevel, N, double, Joints>;

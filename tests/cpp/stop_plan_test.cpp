@@ -26,18 +26,18 @@ TEST(StopProfile, keeps_its_bounds_and_covers_its_stopping_distance) {
     const double other = std::pow(10.0, random.uniform(-4.0, 0.5));
     if (trial % 2 == 0) profile = profile.together(StopProfile<double>::quickest(other, acceleration, jerk, kTick));
     double v = velocity;
-    double way = 0.0;
+    double distance = 0.0;
     double before = 0.0;
     for (int k = 0; k < static_cast<int>(profile.ticks()) + 3; ++k) {
       const double b = profile.removed_fraction(k) * velocity / kTick;
       ASSERT_LE(b, acceleration * (1.0 + 1e-12));
       ASSERT_LE(std::abs(b - before), jerk * kTick * (1.0 + 1e-12)) << trial;
-      way += kTick * (v - kTick * b / 2.0);
+      distance += kTick * (v - kTick * b / 2.0);
       v -= kTick * b;
       before = b;
     }
     EXPECT_NEAR(v, 0.0, 1e-13 * velocity * profile.ticks());
-    EXPECT_NEAR(way, kTick * velocity * profile.coasting_ticks(Level::kAcceleration), 1e-12 * way);
+    EXPECT_NEAR(distance, kTick * velocity * profile.coasting_ticks(Level::kAcceleration), 1e-12 * distance);
   }
 }
 
@@ -107,10 +107,11 @@ void stop_at_random(const Chain<>& chain, std::uint32_t seed, Worst& worst) {
     const Joints moving_last = last;
     StopPlan<kLevel, Eigen::Dynamic> plan(limits, state, last);
     const auto displacement = plan.displacement(limits, from, state);
-    const Joints ways[3] = {random.uniform(n, -1.0, 1.0), random.uniform(n, -1.0, 1.0), Joints::Unit(n, tick % n)};
+    const Joints directions[3] = {random.uniform(n, -1.0, 1.0), random.uniform(n, -1.0, 1.0),
+                                  Joints::Unit(n, tick % n)};
     int ticks = 0;
     for (; ticks < 20000 && !(state.qd.isZero(1e-12) && last.isZero(1e-8)); ++ticks) {
-      for (const Joints& g : ways)
+      for (const Joints& g : directions)
         worst.displacement = std::max(worst.displacement, beyond(displacement, g, state.q - from.q));
       step(plan.next(limits, state, last));
     }

@@ -118,7 +118,7 @@ def clear(
 
 
 def _best(
-    state: Postures, pair: tuple[int, int], ways: Callable[[Part], Iterable[list[Part]]]
+    state: Postures, pair: tuple[int, int], splits: Callable[[Part], Iterable[list[Part]]]
 ) -> tuple[int, list[Part]] | None:
     """The link of a pair, and its parts after the change of one part with the largest gain; None without a gain."""
     most, best = 0.0, None
@@ -129,7 +129,7 @@ def _best(
             if state.lack(*pair, one, other) == 0.0:
                 continue
             lack = state.lack_of_link(i, [part])
-            for new in ways(part):
+            for new in splits(part):
                 if len(parts) + len(new) - 1 <= MOST:
                     gain = lack - state.lack_of_link(i, new)
                     rate = gain / max(len(new) - 1, 1)

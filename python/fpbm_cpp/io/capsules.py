@@ -151,11 +151,11 @@ def _parts_of(shapes: list[Shape], most: int) -> list[Part]:
     """The parts of a link with a capsule each: one part, or several parts if their volume is smaller by 1 - FAIR."""
     whole = together(shapes)
     parts = [_part(whole)]
-    ways: list[Callable[[], list[Shape]]] = [lambda: _cut(whole, parts[0].fit, most)]
+    methods: list[Callable[[], list[Shape]]] = [lambda: _cut(whole, parts[0].fit, most)]
     if 1 < len(shapes) <= MANY:
-        ways.append(lambda: _grouped(shapes, most))
+        methods.append(lambda: _grouped(shapes, most))
     if most > 1:
-        tried = [[_part(shape) for shape in way()] for way in ways]
+        tried = [[_part(shape) for shape in method()] for method in methods]
         parts = min([parts, *tried], key=lambda some: _volume(some) * (FAIR if len(some) == 1 else 1.0))
     return parts
 

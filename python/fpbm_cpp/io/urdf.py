@@ -39,9 +39,9 @@ def read_places(path: str | os.PathLike[str], tip: str, base: str | None = None)
     try:
         links, every = read_robot(name)
         above = tree_of(links, every)
-        way = _way(above, tip, base)
-        follows = follows_of(way, {joint.name: joint.mimic for joint in every})
-        joints, places, held = _chain(way, follows)
+        branch = _branch(above, tip, base)
+        follows = follows_of(branch, {joint.name: joint.mimic for joint in every})
+        joints, places, held = _chain(branch, follows)
         joints, frame = coupled_joints(joints, follows), places[tip][1]
         places = _all_places(above, places)
     except ParameterError:
@@ -88,7 +88,7 @@ def listed(names: Iterable[str]) -> str:
     return ", ".join(shown[:12] + more) or "none"
 
 
-def _way(above: Tree, tip: str, base: str | None) -> list[UrdfJoint]:
+def _branch(above: Tree, tip: str, base: str | None) -> list[UrdfJoint]:
     """The joints from base to tip."""
     up = _to_root(above, "tip", tip)
     links = [tip, *(joint.parent for joint in up)]
@@ -98,12 +98,12 @@ def _way(above: Tree, tip: str, base: str | None) -> list[UrdfJoint]:
         fork = next(link for link in links if link in others)
         where = f"base must be between the root {links[-1]!r} and the tip"
         raise ValueError(f"tip {tip!r} is not below base {base!r}, they have {fork!r} in common: {where}")
-    way = up[: links.index(base)][::-1]
-    count = _moving(way)
+    branch = up[: links.index(base)][::-1]
+    count = _moving(branch)
     if not 1 <= count <= MAX_DOF:
         demand = f"must be 1 to {MAX_DOF}: give another base or tip"
         raise ValueError(f"{count or 'no'} joints move between base {base!r} and tip {tip!r}: {demand}")
-    return way
+    return branch
 
 
 def _moving(joints: Iterable[UrdfJoint]) -> int:
@@ -129,10 +129,10 @@ def _hint(above: Tree, link: str) -> str:
     return (f", perhaps {' or '.join(map(repr, close))}" if close else "") + f"; its branches end in {listed(ends)}"
 
 
-def follows_of(way: Iterable[UrdfJoint], mimics: Mapping[str, Follow | None]) -> dict[str, Follow]:
+def follows_of(branch: Iterable[UrdfJoint], mimics: Mapping[str, Follow | None]) -> dict[str, Follow]:
     """For each mimic joint of the chain: the last leader, which is not a mimic joint."""
     follows = {}
-    for joint in way:
+    for joint in branch:
         if joint.type == "fixed" or joint.mimic is None:
             continue
         leader, ratio, offset = joint.name, 1.0, 0.0
@@ -157,14 +157,14 @@ def follows_of(way: Iterable[UrdfJoint], mimics: Mapping[str, Follow | None]) ->
     return follows
 
 
-def _chain(way: list[UrdfJoint], follows: Mapping[str, Follow]) -> tuple[list[Joint], Places, list[UrdfJoint]]:
+def _chain(branch: list[UrdfJoint], follows: Mapping[str, Follow]) -> tuple[list[Joint], Places, list[UrdfJoint]]:
     """The moving joints, the places of the links of the chain, and the fixed mimic joints."""
-    moving = {joint.name for joint in way if joint.type != "fixed"}
+    moving = {joint.name for joint in branch if joint.type != "fixed"}
     joints: list[Joint] = []
     held = []
     frame = frame_at()
-    places: Places = {way[0].parent: (0, frame)}
-    for joint in way:
+    places: Places = {branch[0].parent: (0, frame)}
+    for joint in branch:
         if joint.type not in TYPES:
             raise ValueError(f"joint {joint.name!r}: type = {joint.type!r}: must be {', '.join(TYPES[:-1])} or fixed")
         frame = frame @ pose(joint.xyz, joint.rpy)

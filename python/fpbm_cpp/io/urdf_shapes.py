@@ -82,8 +82,8 @@ def _clipped(edges: Array, u: Array, low: float, high: float) -> tuple[Array, ND
     enter, leave = np.minimum(enter, leave), np.maximum(enter, leave)
     kept = (s.max(axis=1) >= low) & (s.min(axis=1) <= high)
     shares = np.stack([np.where(flat, 0.0, enter), np.where(flat, 1.0, leave)], axis=1)[kept].clip(0.0, 1.0)
-    start, way = edges[kept, :1], edges[kept, 1:] - edges[kept, :1]
-    left = np.where(shares[:, :, None] == 1.0, edges[kept, 1:], start + shares[:, :, None] * way)
+    start, extent = edges[kept, :1], edges[kept, 1:] - edges[kept, :1]
+    left = np.where(shares[:, :, None] == 1.0, edges[kept, 1:], start + shares[:, :, None] * extent)
     return left, (shares[:, 0] > 0.0) | (shares[:, 1] < 1.0)
 
 

@@ -35,8 +35,8 @@ def _nearest(capsule: Capsule, other: Obstacle, frames: Array) -> tuple[float, A
         best = int(gaps.argmin())
         low, high = t[max(best - 1, 0)], t[min(best + 1, PARTS)]
     point, there = points[best], project(points)[best]
-    way = (there - point) / max(float(gaps[best]), 1e-12)
-    surfaces = np.array([point + capsule.radius * way, there - radius * way])
+    direction = (there - point) / max(float(gaps[best]), 1e-12)
+    surfaces = np.array([point + capsule.radius * direction, there - radius * direction])
     return float(gaps[best]) - capsule.radius - radius, surfaces
 
 

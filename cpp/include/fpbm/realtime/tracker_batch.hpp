@@ -45,9 +45,9 @@ class TrackerBatch {
   /// Most severe status of the ticks of each tracker.
   [[nodiscard]] const std::array<Status, kLanes>& status() const noexcept { return status_; }
 
-  /// One tick of each tracker. `way`: displacements from the start of each tip. Sets all members of `sample` except
-  /// index and time.
-  void tick(const TickReferences<Space, Scalar>& way, Sample<Space, N, In>& sample) noexcept {
+  /// One tick of each tracker. displacements: references relative to the start of each tip. Sets all members of
+  /// `sample` except index and time.
+  void tick(const TickReferences<Space, Scalar>& displacements, Sample<Space, N, In>& sample) noexcept {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const State<N, Scalar> state = trackers_[lane].state();
       set_lane(sample.q, lane, state.q);
@@ -58,7 +58,7 @@ class TrackerBatch {
     x.col(0) = sample.q;
     if constexpr (Loop::kSecondOrder) x.col(1) = sample.qd;
     loop.update(x);
-    TickReferences<Space, In> references = way.template from<In>(start_);
+    TickReferences<Space, In> references = displacements.template from<In>(start_);
     sample.tip = loop.kinematics.tip;
     sample.J = loop.kinematics.J;
     sample.reference = references.stages[0];
@@ -71,7 +71,7 @@ class TrackerBatch {
     const Mask<In> stepped = step(loop, references, x, dx);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const Status status =
-          stepped[lane] ? finish(lane, sample.reference, references.stages[1], x, dx) : alone(lane, way);
+          stepped[lane] ? finish(lane, sample.reference, references.stages[1], x, dx) : alone(lane, displacements);
       status_[lane] = worse(status_[lane], status);
       set_lane(sample.qdd, lane, Vector<N, Scalar>(trackers_[lane].acceleration()));
     }
@@ -111,8 +111,8 @@ class TrackerBatch {
   }
 
   /// Computes the whole tick of a tracker.
-  [[nodiscard]] Status alone(std::size_t lane, const TickReferences<Space, Scalar>& way) noexcept {
-    return trackers_[lane].advance(way.template from<Scalar>(lane_of(start_, lane))).status;
+  [[nodiscard]] Status alone(std::size_t lane, const TickReferences<Space, Scalar>& displacements) noexcept {
+    return trackers_[lane].advance(displacements.template from<Scalar>(lane_of(start_, lane))).status;
   }
 
   [[nodiscard]] static Vector<N, Scalar> column(const X& x, Eigen::Index j, std::size_t lane) noexcept {
