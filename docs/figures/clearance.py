@@ -131,7 +131,7 @@ def film(clearance: fp.Clearance, runs: dict[str, fp.Run]) -> Iterator[np.ndarra
             strip.plot(first.t[::10][:now], 100 * np.array(each)[:now], color=colour, lw=1.6, label=name)
         strip.axhline(100 * clearance.margin, color="black", lw=0.8, ls=":")
         strip.axhspan(-20, 0, color=WRONG, alpha=0.12, lw=0)
-        strip.text(0.05, -12.5, "in one another", fontsize=8, color=WRONG)
+        strip.text(0.05, -12.5, "overlap", fontsize=8, color=WRONG)
         strip.text(first.t[-1], 1.8, "margin", fontsize=8, ha="right")
         strip.set(xlabel="time [s]", ylabel="gap [cm]")
         strip.spines[["top", "right"]].set_visible(False)
