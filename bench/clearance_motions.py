@@ -206,5 +206,5 @@ def run(motions: int, workers: int, minutes: float) -> Iterator[str]:
                 pool.terminate()
                 break
     yield from report(done)
-    yield f"No clear start was found for {skipped}."
+    yield f"Motions for which no start posture was found: {skipped}"
     yield from (f"broken: {each}" for each in bad)

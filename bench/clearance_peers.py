@@ -67,19 +67,19 @@ def scenarios() -> list[Scenario]:
 
     return [
         Scenario(
-            "into a table",
+            "Motion into a table",
             [box([0.5, 0, 0.15], [0.3, 0.5, 0.1], "table")],
             line(down, 1.5).then(line(down, 1.5, True)),
             1.0,
         ),
         Scenario(
-            "along a wall",
+            "Motion along a wall",
             [box([0.55, 0, 0.5], [0.1, 0.8, 0.5], "wall")],
             line(aside, 1.0).then(line(into, 1.0)).then(line(along, 2.0)).then(line(into, 1.0, True)),
             1.0,
             slide=(2.2, 3.8),
         ),
-        Scenario("behind its base", [], line(behind, 2.0).then(line(behind, 2.0, True)), 1.0),
+        Scenario("Target behind the base of the arm", [], line(behind, 2.0).then(line(behind, 2.0, True)), 1.0),
     ]
 
 
@@ -161,7 +161,7 @@ def run() -> Iterator[str]:
     for scenario in scenarios():
         clearance = replace(made.clearance, obstacles=scenario.obstacles)
         scene = Scene(made.arm, made.limits, clearance)
-        yield from ("", f"{scenario.name}: {len(scene.pairs)} pairs, margin {1e3 * MARGIN:g} mm", "")
+        yield from ("", f"{scenario.name} ({len(scene.pairs)} pairs, margin {1e3 * MARGIN:g} mm):", "")
         yield from ("| " + " | ".join(HEADS) + " |", "|---|" + "---:|" * (len(HEADS) - 1))
         for name, make in solvers(scene, made, clearance).items():
             motion, reference = moved(make(), made.arm, scenario)

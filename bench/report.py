@@ -161,7 +161,8 @@ def tails(results: Results) -> list[str]:
         ]
         for row in results.tails
     )
-    return table(["job, caches", *columns[:-1], "p99.9 of an empty call as long", "calls", "preempted"], lines)
+    heads = ["job, caches", *columns[:-1], "p99.9 of an empty call of the same duration", "calls", "preempted"]
+    return table(heads, lines)
 
 
 def over_median(results: Results) -> list[str]:
@@ -171,12 +172,12 @@ def over_median(results: Results) -> list[str]:
         job, empty = row["p99.9"] / row["p50"], row["empty_p99.9"] / row["empty_p50"]
         return [row["name"], f"{job:.2f}", f"{empty:.2f}", f"{job / empty:.2f}"]
 
-    where = "an isolated core" if results.values.get("isolated") else "a shared core, so no bar applies"
+    where = "an isolated core" if results.values.get("isolated") else "a shared core, which has no requirement"
     return [
-        f"p99.9 over p50 in warm caches. On an isolated core the bar is 1.5; this run was on {where}.",
+        f"p99.9 / p50 in warm caches. On an isolated core, at most 1.5 is required. This run was on {where}.",
         "",
         *table(
-            ["job", "job", "an empty call as long", "of the two"],
+            ["job", "p99.9 / p50 of the job", "of an empty call of the same duration", "ratio of both"],
             (cells(row) for row in results.tails if "empty_p50" in row and row["name"] != "timer"),
         ),
     ]
@@ -208,7 +209,7 @@ def growth(results: Results) -> list[str]:
             slope, offset = line([(n, time) for n, time in points if "spatial" not in name or n > 7])
             off = [time / (slope * n + offset) - 1 for n, time in points]
             text.append(
-                f"- {words}: {slope:.1f} ns a joint and {offset:.0f} ns, at most {max(map(abs, off)):.0%} off it"
+                f"- {words}: {slope:.1f} ns per joint plus {offset:.0f} ns, largest deviation {max(map(abs, off)):.0%}"
             )
             columns += [[nanoseconds(time) for _, time in points], [f"{each:+.0%}" for each in off]]
         heads = [head for words in kinds.values() for head in (words, "off the line")]
@@ -263,12 +264,12 @@ def limited(results: Results) -> list[str]:
         "Kinematics, scheme and limits, in random states whose scheme requires more than the limits allow:",
         "",
         *comparison(results, "limited", LIMITED, kind="bounds"),
-        "The limits alone: the difference to the same step without them.",
+        "Times of the limits alone: the differences between the times with limits and the times without limits.",
         "",
         *comparison(results, "limits", LIMITED, kind="bounds"),
-        "Answers to 10,000 problems, beside this library's, which answers all of them. With bounds on jerk, line and s",
-        "are those of the second problem. The last column counts problems without a solution if the whole task",
-        "is an equality.",
+        "Answers of the peers to 10,000 problems, compared with the answers of this library, which answers all.",
+        "With bounds on jerk, the task line and s are those of the second problem. The last column counts problems",
+        "that have no solution if the whole task is an equality.",
         "",
         *table(["arm, task, bounds: library", *columns.values()], scores),
     ]
@@ -300,29 +301,29 @@ def page(results: Results) -> str:
         "",
         "## Promises",
         "",
-        *table(["promise", "measured", "bar", "kept"], promises.rows(results)),
+        *table(["promise", "measured", "required", "kept"], promises.rows(results)),
     ]
     lines += ["## Steps in C++", "", *comparison(results, "step", CPLUSPLUS)]
     lines += ["## Kinematics in C++", "", *comparison(results, "kinematics", CPLUSPLUS)]
     if values.get("limited"):
         lines += ["## Limited steps", "", *limited(results)]
     if values.get("lanes"):
-        lines += ["## Steps in lanes", "", "Time an arm, of several side by side.", "", *in_lanes(results)]
+        lines += ["## Steps in lanes", "", "Time per arm, for several arms in SIMD lanes.", "", *in_lanes(results)]
     if "python" in values:
         lines += ["## Steps from Python", "", *comparison(results, "python", PYTHON)]
     lines += [
         "## Tails",
         "",
-        "Each call waited for; with the timer's own time, which row `timer` is.",
+        "Latency of a call. The times include the time of the timer, which the row `timer` contains.",
         "",
         *tails(results),
         *over_median(results),
     ]
     if "instructions" in values:
-        lines += ["## Instructions a call", "", *instructions(values["instructions"], values.get("paths", {}))]
+        lines += ["## Instructions per call", "", *instructions(values["instructions"], values.get("paths", {}))]
     if "stalls" in values:
         counts = ([name, f"{stalls:.0f}"] for name, stalls in values["stalls"].items())
-        lines += ["## Loads that wait for stores, a call", "", *table(["job", "loads"], counts)]
+        lines += ["## Loads that wait for stores, per call", "", *table(["job", "loads"], counts)]
     if "circle" in values:
         rows = (
             [
@@ -340,14 +341,14 @@ def page(results: Results) -> str:
         lines += [
             "## Sweeps",
             "",
-            "RK4 steps of 1 ms by `fp.sweep`, four evaluations of FPBM each; ratios are to one thread without lanes.",
+            "RK4 steps of 1 ms by `fp.sweep`, four evaluations of FPBM each. Ratios: to one thread without lanes.",
             "",
             *sweeps(results),
         ]
     lines += [
         "## Growth with the number of joints",
         "",
-        "FPBM on planar arms (positions) and spatial ones (poses). Work grows as n in either: a line.",
+        "FPBM on planar arms (position) and spatial arms (pose). The times are approximated by a line in n.",
         "",
         *growth(results),
     ]

@@ -81,9 +81,9 @@ TIMES = [
     "states: p99.9 [µs]",
 ]  # fmt: skip
 MOTIONS = [
-    "", "ticks that bounds limit", "on a velocity bound", "on an acceleration bound", "near a position bound",
+    "", "ticks limited by bounds", "on a velocity bound", "on an acceleration bound", "near a position bound",
     "excess of position [rad]", "of velocity [rad/s]", "of acceleration [rad/s²]", "tip error, rms [mm]",
-    "level 0 not done, median", "90 %", "programs without answer",
+    "level 0 not done, median", "90 %", "QPs without answer",
 ]  # fmt: skip
 STACKS = {
     "pose": "Pose of the tip, position of the elbow, posture",
@@ -118,7 +118,7 @@ def fastest(rows: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 def cpp_section(found: dict[str, Any]) -> Iterator[str]:
-    yield "## C++: a limited step beside a cascade of quadratic programs"
+    yield "## C++: a limited step, compared with a cascade of quadratic programs"
     yield ""
     for stack, result in found.items():
         for states in ("free", "limited"):
@@ -135,7 +135,7 @@ def cpp_section(found: dict[str, Any]) -> Iterator[str]:
         yield "The motion of 20 s:"
         yield from table(MOTIONS, motion_rows(result["motions"]))
         yield (
-            "Largest difference of level 0's motion from this library's where no bound is active, relative: "
+            "Largest relative difference from the level 0 motion of this library, without active bounds: "
             + "; ".join(f"{each['name']} {each['first']:.0e}" for each in result["differences"])
             + f". Kinematics: {max(each['kinematics'] for each in result['differences']):.0e}."
         )
@@ -163,17 +163,17 @@ def python_row(name: str, ratios: list[float], row: dict[str, Any]) -> list[str]
 
 
 def python_section(found: dict[str, dict[str, Any]]) -> Iterator[str]:
-    yield "## Python: a tick beside each peer's solve call"
+    yield "## Python: a tick, compared with a solve call of each peer"
     rows = []
     for name, result in found.items():
         peer, velocity, acceleration = result["rows"]
         bounds = "" if result["acceleration"] else " (no bound on acceleration)"
         rows.append(python_row(name + bounds, result["ratios"], peer))
         ratio = velocity["least"] / acceleration["least"]
-        rows.append(python_row(f"fpbm_cpp, velocity, beside {name}", [1.0, ratio], velocity))
-        rows.append(python_row(f"fpbm_cpp, acceleration, beside {name}", [1 / ratio, 1.0], acceleration))
+        rows.append(python_row(f"fpbm_cpp, velocity, in the run of {name}", [1.0, ratio], velocity))
+        rows.append(python_row(f"fpbm_cpp, acceleration, in the run of {name}", [1 / ratio, 1.0], acceleration))
     yield from table(HEADS, rows)
-    yield "Largest difference of the tip's motion in a tick from this library's, relative, without active bounds:"
+    yield "Largest relative difference from the tip motion of this library in a tick, without active bounds:"
     yield from table(
         ["", "the tip's task alone", "the whole stack"],
         [[name, f"{each['alone']:.0e}", f"{each['whole']:.0e}"] for name, each in found.items()],
@@ -218,7 +218,7 @@ def main() -> None:
     if peers:
         sections += python_section(peers)
     head = [
-        "# A stack of tasks beside peers",
+        "# A stack of tasks, compared with peers",
         "",
         "Written by `python bench/stack_peers.py`; compared quantities: [README](../README.md#stacks).",
         f"{processor()}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}, Python {platform.python_version()}.",

@@ -139,7 +139,7 @@ def main() -> None:
         where = f"{row['name']:20}{row['lanes']:>8}{row['workers']:9}{row['motions']:9}"
         print(f"{where}{row['per_second'] / 1e6:12.2f} M{row['ratio']:8.2f}")
     best = max(row["ratio"] for row in rows if row["name"] == PAPER)
-    print(f"the paper's circle, best over one thread without lanes: {best:.1f} (bar: 10)")
+    print(f"the paper's circle, best over one thread without lanes: {best:.1f} (required: 10)")
     if options.out:
         options.out.write_text(json.dumps(rows, indent=1))
 

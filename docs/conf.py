@@ -31,7 +31,7 @@ html_css_files = ["wide.css"]
 
 highlight_language = "none"  # Default for blocks without a language: output of programs.
 
-# Pages read the same on GitHub: $…$, ```math, links to headings.
+# GitHub renders the same syntax: $…$, ```math, links to headings.
 myst_enable_extensions = ["dollarmath"]
 myst_fence_as_directive = ["math"]
 myst_heading_anchors = 3
@@ -54,7 +54,7 @@ breathe_projects = {"fpbm": str(HERE.parent / "build" / "doxygen" / "xml")}
 breathe_default_project = "fpbm"
 breathe_show_include = False
 
-# Names of Eigen's, of the standard library's and of template parameters have no page here; bench/README.md has, by
+# Names of Eigen, of the standard library and of template parameters have no page here. bench/README.md has a page with
 # another name.
 nitpicky = True
 suppress_warnings = ["duplicate_declaration.cpp"]  # A namespace may stand in more than one header.
@@ -62,10 +62,10 @@ nitpick_ignore_regex = [("cpp:.*", ".*"), ("myst", r"\.\./README\.md")]
 
 
 def put_page(app, error):
-    """The page that moves, with a link to these pages; a plain word where it was not built."""
+    """Copies the interactive page, with a link to these pages. If the page was not built, writes a note."""
     page = HERE.parent / "build" / "web" / "page.html"
     words = (
-        page.read_text("utf-8") if page.exists() else "<p>This page was not built: make page.</p><!--DOCUMENTATION-->"
+        page.read_text("utf-8") if page.exists() else "<p>The page is missing. Run make page.</p><!--DOCUMENTATION-->"
     )
     link = '<a href="index.html">Documentation</a>. '
     (Path(app.outdir) / page.name).write_text(words.replace("<!--DOCUMENTATION-->", link), "utf-8")

@@ -20,12 +20,12 @@ SECTIONS = (
 
 
 class Headers(SphinxDirective):
-    required_arguments = 1  # The room.
+    required_arguments = 1  # The folder of the headers, in INCLUDE.
 
     def run(self) -> list[nodes.Node]:
         headers = sorted((INCLUDE / self.arguments[0]).glob("*.hpp"))
         if not headers:
-            raise self.error(f"no headers in {INCLUDE / self.arguments[0]}")
+            raise self.error(f"no *.hpp files in {INCLUDE / self.arguments[0]}: name a folder of headers in {INCLUDE}")
         lines = StringList()
         for header in headers:
             self.env.note_dependency(str(header))

@@ -1,4 +1,4 @@
-"""Docstrings are plain text to be read in a terminal: here they become reStructuredText that says the same."""
+"""Converts docstrings, which are plain text for a terminal, to reStructuredText with the same content."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def restore(app: Sphinx, what: str, name: str, thing: Any, options: Any, lines: 
 
 
 def shorten(app: Sphinx, what: str, name: str, thing: Any, options: Any, signature: str | None, returns: Any) -> Any:
-    """Signatures without the compiled module's annotations, which docstrings say better."""
+    """Removes the annotations of the compiled module from signatures, since docstrings describe the types."""
     return signature and ("()" if signature == "(*args, **kwargs)" else bare(signature), None)
 
 

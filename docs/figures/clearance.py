@@ -61,7 +61,7 @@ def motions(clearance: fp.Clearance) -> dict[str, fp.Run]:
 
 
 def outline(a: np.ndarray, b: np.ndarray, radius: float) -> np.ndarray:
-    """A capsule as it is seen: two half circles."""
+    """Outline of a projected capsule: two half circles."""
     a, b = VIEW @ a, VIEW @ b
     heading = np.arctan2(*(b - a)[::-1]) - np.pi / 2
     arc = radius * np.stack([np.cos(TURN + heading), np.sin(TURN + heading)], axis=1)
@@ -69,7 +69,7 @@ def outline(a: np.ndarray, b: np.ndarray, radius: float) -> np.ndarray:
 
 
 def slab(box: fp.Cuboid) -> list[np.ndarray]:
-    """The three sides of a box that are seen."""
+    """The three visible sides of a box."""
     p, (x, y, z) = box.pose[:3, 3], box.half
     signs = np.sign(TO_EYE)
     sides = []
@@ -102,7 +102,7 @@ def draw(axes: Any, clearance: fp.Clearance, q: np.ndarray, trail: np.ndarray) -
 
 
 def _bodies(shapes: list[Any]) -> PolyCollection:
-    """Capsules, from back to front, in a light beside the eye."""
+    """Capsules, from back to front, lit from beside the eye."""
     parts, colours = [], []
     for _, radius, (a, b), colour in shapes:
         for share, shade in ((1.06, 0.45), (1.0, 0.82), (0.72, 0.95), (0.4, 1.08)):

@@ -26,7 +26,7 @@ BOUNDS |= {f"angular_{name}": bound for name, bound in BOUNDS.items()}
 READY = np.array([0.0, -0.3, 0.0, -2.0, 0.0, 1.8, 0.8])
 JUMPS = np.array([[0.15, 0.0, 0.0], [0.0, 0.2, -0.1], [-0.15, -0.2, 0.1]])  # [m]
 PANDA = fp.SerialArm.preset("panda")
-GENTLE = 50.0 * PANDA.limits.acceleration  # [rad/s³], a tenth of the maker's
+GENTLE = 50.0 * PANDA.limits.acceleration  # [rad/s³], a tenth of the manufacturer's bound
 
 
 def run(jerk: np.ndarray, filtered: bool) -> np.ndarray:
@@ -58,7 +58,7 @@ def off_line(p: np.ndarray) -> float:
 
 
 def settled(p: np.ndarray) -> float:
-    """Time from a jump until the tip stays within 1 mm of its target, the longest [s]."""
+    """Longest time from a jump until the tip stays within 1 mm of its target [s]."""
     steps = round(EVERY / DT)
     goals = PANDA.forward(READY)[:3, 3] + np.cumsum(JUMPS, axis=0)
     parts = [np.linalg.norm(p[1 + i * steps : 1 + (i + 1) * steps] - goal, axis=1) for i, goal in enumerate(goals)]

@@ -1,4 +1,4 @@
-"""A Panda on a circle that is faster than its joints can: draws run.png, the page of a run within limits.
+"""A Panda on a circle that is too fast for its joint limits: draws run.png, the plots of a run within limits.
 
     python docs/figures/run.py [where to write the picture]
 

@@ -1,4 +1,4 @@
-"""A Panda whose handle was dragged, also to unreachable targets: draws servo.png in a browser without a screen.
+"""A Panda whose handle was dragged, also to unreachable targets: draws servo.png in a headless browser.
 
     python docs/figures/servo.py [where to write the picture]
 
@@ -22,7 +22,7 @@ READY = [0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785]
 
 
 def drag(servo: Servo, displacement: list[float], seconds: float) -> None:
-    """Move the handle evenly, as far as this from where it is [m], 20 places a second."""
+    """Moves the handle by a displacement [m] at constant speed, with 20 updates per second."""
     start = servo.target
     for share in np.linspace(0.0, 1.0, round(20 * seconds) + 1)[1:]:
         x = start.copy()

@@ -1,11 +1,11 @@
-"""Through singular postures by five treatments of one law, FPBM: draws singularities.png and prints its numbers.
+"""FPBM near singular postures, with five kinds of damping: draws singularities.png and prints its numbers.
 
     python docs/figures/singularities.py [where to write the picture]
 
-The law as it is and the library's damping run in the library. The two classics, which damp all directions, are
-formulas in NumPy: constant damping (Wampler, 1986) and damping that sets in where the manipulability falls
-(Nakamura and Hanafusa, 1986). All have the same largest gain from a desired tip velocity to the joint velocities, 1.2/ε
-or less.
+The library computes the motions without damping and with the damping of fpbm_cpp. NumPy computes the motions with two
+dampings of all directions: constant damping (Wampler, 1986), and damping below a threshold of the manipulability
+(Nakamura and Hanafusa, 1986). With damping, the largest gain from a desired tip velocity to the joint velocities is
+1.2/ε or less.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class Motion:
     reach: float = np.inf  # [m], from the base
 
     def target(self, t: float) -> tuple[Any, Vector, Vector]:
-        """Where the tip is to be, and its first two derivatives."""
+        """Reference of the tip, and its first two derivatives."""
         x, xd, xdd = self.path.sample(min(t, self.path.duration))
         if t >= self.path.duration:
             xd, xdd = np.zeros_like(xd), np.zeros_like(xdd)
@@ -164,9 +164,9 @@ def to_the_edge(beyond: float = 0.02, back: bool = True) -> Motion:
 
 
 def through_the_middle() -> Motion:
-    """A Panda, its hand held level, down a line on which the axes of joints 1, 3, 5 and 7 meet in one point.
+    """A Panda on a line at constant orientation, through a posture in which the joint axes 1, 3, 5, 7 meet in a point.
 
-    There no joint moves the tip across the plane of the arm, but the reference has no motion across the plane.
+    In this posture, no joint moves the tip perpendicular to the plane of the arm. The reference stays in this plane.
     """
     arm = fp.SerialArm.preset("panda")
     singular = np.array([0, 0, 0, -1.6, 0, 3.330367060928, 0])

@@ -1,4 +1,4 @@
-"""A Panda carries a cup past a wall for its elbow: draws tasks.gif.
+"""A Panda carries a cup along a wall that its elbow avoids: draws tasks.gif.
 
 python docs/figures/tasks.py [where to write the film]
 """
@@ -31,8 +31,8 @@ def main(file: Path) -> None:
     run = fp.track(arm, path, scheme, Q0, stack=stack, task="place", bounds=[wall], hold=1.5)
     elbow = max(link_frames(arm, q)[4][1, 3] for q in run.q)
     tilt, place = (np.linalg.norm(run.errors[name], axis=1) for name in ("upright", "place"))
-    print(f"elbow at most at {elbow:.6f} m of {WALL} m; tilt after 2 s at most {tilt[2000:].max():.0e} rad; ", end="")
-    print(f"place off by {place.max():.2f} m at most, by {place[-1]:.0e} m at the end")
+    print(f"y of the elbow: at most {elbow:.6f} m, bound {WALL} m; tilt after 2 s: at most {tilt[2000:].max():.0e} rad")
+    print(f"error of the place: at most {place.max():.2f} m, at the end {place[-1]:.0e} m")
     animate(run, file, fps=12.5, panels=["task_errors", "scale"], dpi=90)
 
 

@@ -33,7 +33,7 @@ FIRST, SECOND = "#D55E00", "#0072B2"
 LINK, OTHER, BODY, WORLD, TRAY = "#8FB8DE", "#B9A6D9", "#C9C9C9", "#E9B44C", "#7FB77E"
 CAPSULES = fp.Clearance.preset("panda").capsules
 TURN = np.linspace(0.0, np.pi, 13)
-Shape = tuple[np.ndarray, float, str]  # Ends of a capsule [m], or corners of a polygon; radius [m], 0 of a polygon.
+Shape = tuple[np.ndarray, float, str]  # Ends of a capsule [m], or corners of a polygon; radius [m], 0 for a polygon.
 
 
 def view(x: float, y: float, z: float) -> np.ndarray:
@@ -45,7 +45,7 @@ def view(x: float, y: float, z: float) -> np.ndarray:
 
 
 def draw(axes: Any, shapes: Sequence[Shape], seen: np.ndarray) -> None:
-    """Capsules and polygons, from back to front, in a light beside the eye."""
+    """Capsules and polygons, from back to front, lit from beside the eye."""
     parts, colours = [], []
     for points, radius, colour in sorted(shapes, key=lambda shape: float(shape[0].mean(axis=0) @ seen[2])):
         flat = points @ seen[:2].T
@@ -176,7 +176,7 @@ def wipe() -> Iterator[np.ndarray]:
             shapes = panda(robot, q[i], 3, LINK)
             tip = robot.forward(q[i], "panda_link8")[:3, 3]
             shapes.append((np.array([tip, tip - [0, 0, GRIPPER]]), 0.03, BODY))
-            draw(axes, base(robot.forward(q[i], "base_yaw")), seen)  # Below the table, which is above and nearer.
+            draw(axes, base(robot.forward(q[i], "base_yaw")), seen)  # Drawn before the table, which is nearer.
             draw(axes, [(level((x - 0.05, x + 0.42), (y - 0.08, y + 0.98), z), 0, WORLD)], seen)
             trail = tips[name][: i // 60 + 1] - [0, 0, GRIPPER]
             axes.plot(*(trail @ seen[:2].T).T, color="white", lw=5, alpha=0.6, solid_capstyle="round")

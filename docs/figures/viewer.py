@@ -1,4 +1,4 @@
-"""The viewer, with a Panda halfway along its circle: draws viewer.png in a browser without a screen.
+"""The viewer, with a Panda halfway along its circle: draws viewer.png in a headless browser.
 
     python docs/figures/viewer.py [where to write the picture]
 
@@ -45,7 +45,7 @@ def a_viewer() -> Viewer:
 
 
 def photograph(shown: Page, target: Path, text: str, then: Callable[[], None] = lambda: None) -> None:
-    """A page that has a text, once all of it is there and something else was done."""
+    """Saves a screenshot of a page after the page shows the text and `then` was called."""
     with tempfile.TemporaryDirectory() as profile, sync_playwright() as tools:
         how: dict[str, Any] = {"executable_path": shutil.which("chromium"), "args": FLAGS, "viewport": SIZE}
         with tools.chromium.launch_persistent_context(profile, **how) as browser:
@@ -53,8 +53,8 @@ def photograph(shown: Page, target: Path, text: str, then: Callable[[], None] = 
             page.set_default_timeout(PATIENCE)
             page.goto(shown.url)
             page.get_by_text(text).first.wait_for()
-            page.add_style_tag(content=".mantine-Notifications-root { display: none }")  # That there is no processor.
-            page.wait_for_timeout(10_000)  # Meshes come last.
+            page.add_style_tag(content=".mantine-Notifications-root { display: none }")  # Message: no GPU.
+            page.wait_for_timeout(10_000)  # Meshes load last.
             then()
             page.screenshot(path=target)
 
