@@ -46,8 +46,9 @@ int main() {
   const auto rest = fpbm::NullSpace<7>().with_damping(4.0).with_rest_posture(ready, 4.0);
 
   // The task determines six of the seven degrees of freedom, so all peaks are similar, and only the motion of the elbow
-  // differs. MVN and WMVN end each circle in a different posture. With MAN, the elbow still moves when the tip is at
-  // rest, and the tip error grows. With FPBM, the tip error decays, and the arm comes to rest in its start posture.
+  // differs. With MVN and WMVN, the posture changes from circle to circle. With MAN, the elbow still moves when the tip
+  // is at rest, and the tip error grows. With FPBM, the tip error decays, and the arm comes to rest in its start
+  // posture.
   std::puts("        peak    peak     final   tip error      least    from first");
   std::puts("        rad/s   rad/s²   rad/s   m      rad     manip.  posture, rad");
   const bool done = run("MVN", fpbm::MVN<7>(), ready) && run("WMVN", fpbm::WMVN<7>(weights), ready) &&

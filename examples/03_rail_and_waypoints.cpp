@@ -65,6 +65,7 @@ bool run(const char* name, double weight) {
 }
 
 int main() {
-  // A rail of small weight follows the hand. A rail of large weight moves only as far as the workspace requires.
+  // With a small entry in W, the rail follows the hand. With a large entry, the rail moves only as far as the workspace
+  // requires.
   return run("light rail", 0.1) && run("heavy rail", 10.0) ? 0 : 1;
 }

@@ -34,7 +34,8 @@ def run(weight: float) -> fp.Run:
     return fp.simulate(arm, path, scheme, start, hold=1.0, task="pose")
 
 
-# A rail of small weight follows the hand. A rail of large weight moves only as far as the workspace requires.
+# With a small entry in W, the rail follows the hand. With a large entry, the rail moves only as far as the workspace
+# requires.
 runs = {"light rail, W = diag(0.1, 1, …, 1)": run(0.1), "heavy rail, W = diag(10, 1, …, 1)": run(10)}
 for name, done in runs.items():
     print(

@@ -36,5 +36,5 @@ int main() {
 
   // The task determines three of the seven degrees of freedom. Without a secondary motion, the four others end in
   // another posture, and still move when the tip is at rest.
-  return run("left alone", home, nothing) && run("drawn home", home, homeward) ? 0 : 1;
+  return run("no secondary motion", home, nothing) && run("rest posture", home, homeward) ? 0 : 1;
 }

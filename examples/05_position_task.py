@@ -14,8 +14,8 @@ path = fp.Lissajous((0.15, 0.1), 8.0, frequencies=(1, 2), phase=0.0, time_law="q
 # The task determines three of the seven degrees of freedom. Without a secondary motion, the four others end in another
 # posture, and still move when the tip is at rest.
 schemes = {
-    "left alone": fp.FPBM(0.6, np.ones(7), k1=20, k2=100),
-    "drawn home": fp.FPBM(0.6, np.ones(7), k1=20, k2=100, null_damping=4, rest_posture=home, null_stiffness=4),
+    "no secondary motion": fp.FPBM(0.6, np.ones(7), k1=20, k2=100),
+    "rest posture": fp.FPBM(0.6, np.ones(7), k1=20, k2=100, null_damping=4, rest_posture=home, null_stiffness=4),
 }
 for name, scheme in schemes.items():
     run = fp.simulate(arm, path, scheme, home, hold=4.0)
@@ -24,4 +24,4 @@ for name, scheme in schemes.items():
         f" at the end {abs(run.qd[-1]).max():.0e} rad/s and {abs(run.q[-1] - home).max():.0e} rad from home"
     )
 
-plot_run(run, "A Kinova Gen3 draws a Lissajous figure, its joints drawn home").savefig("gen3_lissajous.png")
+plot_run(run, "A Kinova Gen3 draws a Lissajous figure, with a rest posture").savefig("gen3_lissajous.png")

@@ -95,7 +95,7 @@ void become_realtime() {
     std::printf("no real-time priority (%s): other programs may delay a tick\n", std::strerror(error));
   }
   if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
-    std::printf("memory is not locked (%s): a page may have to be fetched during a tick\n", std::strerror(errno));
+    std::printf("memory is not locked (%s): a page fault may delay a tick\n", std::strerror(errno));
   }
   volatile char stack[256 * 1024];
   for (std::size_t i = 0; i < sizeof stack; i += 1024) stack[i] = 0;
@@ -179,7 +179,7 @@ int main(int argc, char** argv) {
   long ticks = 0;
   for (const long count : seen) ticks += count;
   std::printf("%ld ticks at %g Hz, %ld deadlines missed\n", ticks, rate, missed);
-  lateness.print("late to wake up");
+  lateness.print("wake-up latency");
   compute.print("time to compute a tick");
   std::printf("\non the circle at most %.1e m and %.1e rad off; at the end %.0e rad/s\n", error, orientation_error,
               speed);

@@ -3,10 +3,10 @@
     python examples/11_franka.py                        with franky-sim, a simulated robot that this program starts
     python examples/11_franka.py --robot 172.16.0.2     with a real robot
 
-libfranka calls every millisecond and accepts joint positions. The robot rejects positions with a velocity, acceleration
-or jerk out of bounds. The tracker keeps its commands within all these bounds. A TargetFilter computes a motion that the
-arm can follow from late and irregular poses with gaps. This program has never run on a robot: start slowly, with the
-stop button at hand. Ctrl-C brings the arm to rest and ends the program.
+The control loop of libfranka has a cycle of 1 ms and accepts joint positions. The robot rejects positions with a
+velocity, acceleration or jerk out of bounds. The tracker keeps its commands within all these bounds. From late and
+irregular poses with gaps, a TargetFilter computes a motion that the arm can follow. This program has never run on a
+robot: start slowly, with the stop button at hand. Ctrl-C brings the arm to rest and ends the program.
 """
 
 from __future__ import annotations
@@ -186,7 +186,7 @@ def report(motion: Motion) -> None:
     statuses = ", ".join(f"{count} {name}" for name, count in motion.statuses.items())
     print(f"{len(motion.q)} cycles, {motion.missed()} of them missed; ticks: {statuses}")
     print(f"largest tip error: {tip.max():.4f} mm")
-    print(f"{len(motion.sent)} commands sent; of each limit the worst joint used: {shares}")
+    print(f"{len(motion.sent)} commands sent; largest fraction of each limit: {shares}")
 
 
 def main() -> None:

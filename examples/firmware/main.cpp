@@ -3,8 +3,8 @@
 #include "report.hpp"
 #include "semihosting.hpp"
 
-// A Panda and a UR5e on a Cortex-M7: each draws circles, and prints by semihosting its joint positions, the number of
-// instructions per tick, and the size of the stack.
+// A Panda and a UR5e on a Cortex-M7 draw circles. The program prints joint positions, the number of instructions per
+// tick, and the size of the stack by semihosting.
 
 extern "C" {
 extern std::uint32_t stack_bottom[];

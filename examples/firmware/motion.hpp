@@ -41,7 +41,7 @@ class Motion {
 
   static fpbm::TrackerOptions<float> options() {
     fpbm::TrackerOptions<float> options;
-    options.recovery = false;  // To remember a posture costs 29,000 instructions in one tick.
+    options.recovery = false;  // A recovery stores postures, at 29,000 instructions in one tick.
     return options;
   }
 

@@ -41,8 +41,8 @@ int main(int argc, char** argv) {
       return stopping && speed < 1e-9 ? franka::MotionFinished(command) : command;
     };
 
-    // The tracker bounds accelerations, not jerks, and the robot refuses jerks above 5000 rad/s³. stop() causes larger
-    // jerks, and so does a joint that reaches a bound; libfranka's rate limiter removes them.
+    // The robot rejects jerks above 5000 rad/s³. The tracker keeps this bound, also during stop(). libfranka's rate
+    // limiter is an additional check.
     constexpr bool kLimitRate = true;
     robot.control(callback, franka::ControllerMode::kJointImpedance, kLimitRate);
     std::printf("at worst: %s\n", message(worst));

@@ -26,7 +26,7 @@ class AnyScheme {
 
   template <typename Scheme>
   explicit AnyScheme(const Scheme& scheme) : held_(std::make_shared<const Held<Scheme>>(scheme)) {
-    static_assert(Scheme::kLevel == kLevel, "a scheme of the same level");
+    static_assert(Scheme::kLevel == kLevel, "the scheme must have the level of the AnyScheme");
   }
 
   /// Throws std::invalid_argument if a parameter is for another number of joints.

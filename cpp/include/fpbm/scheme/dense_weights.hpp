@@ -89,7 +89,7 @@ class DenseWeights {
       for (Eigen::Index i = j + 1; i < W.rows(); ++i) {
         if (abs(W(i, j) - W(j, i)) > tolerance) {
           validation::fail(validation::element("weights", i, j), W(i, j),
-                           "equal to the transposed entry, since W is symmetric");
+                           "equal to the transposed entry: W must be symmetric");
         }
       }
     }

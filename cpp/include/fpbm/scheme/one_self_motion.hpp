@@ -12,9 +12,9 @@
 #include "fpbm/objective/null_space.hpp"
 #include "fpbm/singular/damped_gram.hpp"
 
-/// Laws for degree of redundancy 1 (docs/equations.md): an arm with one joint more than its task has rows has one
-/// self-motion v, J v = 0. Every law is then u = p + γ v, where p is any solution of J p = b. p is computed from J and
-/// not from JJᵀ, so that the condition number of JJᵀ has no effect.
+/// Laws for degree of redundancy 1 (docs/equations.md): an arm with n = m + 1 has one self-motion v, J v = 0. Every law
+/// is then u = p + γ v, where p is any solution of J p = b. p is computed from J and not from JJᵀ, so that the
+/// condition number of JJᵀ has no effect.
 namespace fpbm {
 
 /// Sets u to the law for degree of redundancy 1. p, r and s are any solutions of J p = b, J r = xd and J s = Jd v:

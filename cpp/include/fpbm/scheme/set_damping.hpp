@@ -68,8 +68,9 @@ template <typename Scheme, typename Scalar>
 void give_damping(Scheme& scheme, const DefaultDamping<Scalar>& damping) {
   static_assert(
       kTakesDamping<Scheme, Scalar>,
-      "this scheme cannot take the tracker's damping: give it members `singular` and `null_space`, or declare "
-      "set_damping(MyScheme&, const fpbm::DefaultDamping<>&) in its namespace; an empty body means no damping");
+      "set_damping() is not defined for this scheme: add the members `singular` and `null_space`, or declare "
+      "set_damping(MyScheme&, const fpbm::DefaultDamping<>&) in the namespace of the scheme; an empty body means no "
+      "damping");
   if constexpr (kTakesDamping<Scheme, Scalar>) set_damping(scheme, damping);
 }
 

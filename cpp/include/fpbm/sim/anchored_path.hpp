@@ -8,7 +8,7 @@ namespace fpbm {
 /// Path in the base frame from the start position of the tip, in two segments: the motion, then rest at the end of the
 /// path.
 ///
-/// The reference may be discontinuous between the segments (for example xdd of the paper). Therefore, each step of an
+/// The reference may be discontinuous between the segments (for example xdd of SinSquared). Therefore, each step of an
 /// integrator reads the reference of its own segment. RK4 reads the reference in the middle of a step twice, and the
 /// reference at the end of a step again at the start of the next step. Therefore, the last reference is stored.
 /// With lanes, many arms follow one path, each from its own tip.

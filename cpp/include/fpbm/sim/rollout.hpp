@@ -40,9 +40,9 @@ template <typename Recorder, typename Sample>
 /// Integrates an arm with a scheme by RK4 at fixed steps: along a path, then for the time `hold` of the grid with the
 /// reference at rest at the end of the path.
 ///
-/// The path is a displacement from the start of the tip. If damping at a singular posture prevents the tip from
-/// following its path, the motion stops with kTaskLost, whereas a Tracker continues. If the discretisation error of the
-/// tip exceeds 1e-4 of the largest lever arm, the status is kCoarse; this error is an estimate, see TaskWatch.
+/// The path is a displacement from the start position of the tip. If damping at a singular posture prevents the tip
+/// from following its path, the motion stops with kTaskLost, whereas a Tracker continues. If the discretisation error
+/// of the tip exceeds 1e-4 of the largest lever arm, the status is kCoarse; this error is an estimate, see TaskWatch.
 /// Velocity-level schemes integrate q (start.qd is not read), acceleration-level schemes integrate q and qd.
 /// `record(const Sample&)`, which must be noexcept, is called once per time of the grid. If `record` returns false, the
 /// motion ends at this sample, and the status is not a failure. Throws std::invalid_argument if the scheme or start
@@ -61,7 +61,7 @@ RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Pat
   using Space = typename Path::Space;
   using Loop = ClosedLoop<Arm, Scheme, Space>;
   using X = typename Loop::X;
-  static_assert(std::is_same_v<typename Path::Scalar, Time>, "the path and the arm have one Scalar");
+  static_assert(std::is_same_v<typename Path::Scalar, Time>, "the path and the arm must have the same Scalar");
 
   if (grid.duration() != path.duration()) {
     validation::fail("grid duration", grid.duration(), "the duration of the path = ", path.duration());

@@ -5,8 +5,8 @@
 
 #include "fpbm/task/tick_feedback.hpp"
 
-/// Stability of a tick with feedback, for gains times powers of the tick length h: x₁ = k₁h, x₂ = k₂h², x₃ = kᵢh³ at
-/// acceleration level; x₁ = kh, x₃ = kᵢh² at velocity level.
+/// Stability of a tick with feedback and integral gain kᵢ, for gains times powers of the tick length h: x₁ = k₁h, x₂ =
+/// k₂h², x₃ = kᵢh³ at acceleration level; x₁ = kh, x₃ = kᵢh² at velocity level.
 namespace fpbm {
 
 /// Whether no root of (z−1)³ + a(z−1)² + b(z−1) + c is outside the unit circle, by Routh's criterion for the polynomial
@@ -23,9 +23,9 @@ template <typename Scalar>
   return holds(w3) && holds(w2) && holds(w1) && holds(c) && (w2 + round_off) * w1 >= w3 * c;
 }
 
-/// Whether a tick damps ë = −x₁ė − x₂e − x₃I. The integral I increases at the end of a tick by e at the start of the
-/// tick. Both forms of a tick must be stable: a step of RK4, and a step with the mean acceleration of RK4, as with
-/// bounds on jerk and other limits.
+/// Whether a tick damps ë = −x₁ė − x₂e − x₃I. At the end of a tick, the integral I increases by the error e at the
+/// start of the tick. Both forms of a tick must be stable: a step of RK4, and a step with the mean acceleration of RK4,
+/// as with bounds on jerk and other limits.
 template <typename Scalar>
 [[nodiscard]] bool is_stable_acceleration(Scalar x1, Scalar x2, Scalar x3 = Scalar(0)) noexcept {
   struct Change {

@@ -41,7 +41,7 @@ class ErrorWatch {
     return growth <= expected + truncation + round_off;
   }
 
-  /// Sets e and its rate for the next step. The reference may be discontinuous after follows().
+  /// Sets e and its rate for the next step. The reference may be discontinuous between follows() and start_from().
   void start_from(const TaskVector& error, const TaskVector& rate) noexcept {
     error_ = error;
     rate_ = rate;
@@ -65,8 +65,8 @@ class ErrorWatch {
 /// Detects the step of a rollout in which the tip leaves its reference, in position and, at acceleration level, in
 /// velocity. Also estimates whether the discretisation error of the tip is significant (accurate()).
 ///
-/// The estimate needs no additional evaluations. made_ is the growth of the tip error in excess of its rate, summed
-/// over all steps; at acceleration level, plus the integral of made_rate_, the excess growth of the velocity error.
+/// The estimate needs no additional evaluations. made_ is the sum of the positive growth() of the tip error over all
+/// steps. At acceleration level, made_ also contains the integral of made_rate_, the same sum for the velocity error.
 /// Without feedback, made_ is an upper bound on the discretisation error. With feedback, the tip error is another upper
 /// bound. The smaller bound is used. If a wrong start velocity causes a larger error, a discretisation error may be
 /// missed.

@@ -20,7 +20,7 @@ struct CenterOfMassTask {
   static constexpr bool kWhole = false;
 
   TaskGains<Scalar> gains;
-  std::array<int, M> rows = PositionTask<M, Scalar>::first_rows();  ///< Coordinates 0 (x), 1 (y) and 2 (z), each once.
+  std::array<int, M> rows = PositionTask<M, Scalar>::first_rows();  ///< Coordinates 0 (x), 1 (y) or 2 (z), distinct.
 
   /// Throws std::invalid_argument if the robot has no mass, or if `rows` are not different numbers from 0 to 2.
   template <typename Robot>

@@ -21,8 +21,8 @@ template <typename Space, int N, typename Scalar>
   return v;
 }
 
-/// Commanded acceleration, the feedback of (13) in docs/equations.md: J qdd = b = xdd − Jd qd + k₁ (xd − J qd) + k₂ (x
-/// ⊖ f(q)).
+/// Commanded acceleration with the feedback of (13) in docs/equations.md:
+/// J qdd = b = xdd − Jd qd + k₁ (xd − J qd) + k₂ (x ⊖ f(q)).
 template <typename Space, int N, typename Scalar>
 [[nodiscard, gnu::always_inline]] inline Vector<Space::kRows, Scalar> commanded_acceleration(
     Scalar k1, Scalar k2, const Kinematics<Space, N, Scalar>& kinematics, const Reference<Space, Scalar>& reference,

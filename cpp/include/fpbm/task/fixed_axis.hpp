@@ -10,7 +10,7 @@
 namespace fpbm {
 
 /// Rotation about a fixed axis, represented by the coordinate of the rotation vector with the largest angle. The
-/// angles, velocities and accelerations of the other two coordinates are this coordinate times factors of
+/// angles, velocities and accelerations of the other two coordinates are those of this coordinate times factors of
 /// magnitude ≤ 1. The other two coordinates therefore keep any bound that this coordinate keeps.
 template <typename Scalar>
 struct FixedAxis {

@@ -55,8 +55,8 @@ class LeastDuration {
   }
 
   /// Waypoints::within() multiplies the result of the search by this slack, so that no bound is exceeded. The path is
-  /// then at most 0.5 % slower than the fastest path. WaypointsBounds.* prints the largest difference. A tenth of the
-  /// slack needs 1.7 times the samples for poses.
+  /// then at most 0.5 % slower than the fastest path. WaypointsBounds.* prints the largest difference. With a slack of
+  /// 1.0005, poses need 1.7 times the samples.
   static constexpr Scalar kSlack = Scalar(1.005);
 
  private:
@@ -82,8 +82,8 @@ class LeastDuration {
   /// the slack.
   template <typename Sample>
   void search(const Sample& sample, std::size_t i, Scalar middle, Scalar half, int halvings, Scalar& longest) const {
-    // Must be below kSlack: an interval with a peak between both values would be halved kHalvings times. Values from 1
-    // to just below kSlack need the same number of samples.
+    // Must be below kSlack. Otherwise, an interval with a peak between both values would be halved kHalvings times.
+    // Values from 1 to just below kSlack need the same number of samples.
     constexpr Scalar kRaise = Scalar(1.004);
     const TipBounds<Scalar> here = peaks(sample(middle));
     if (required_duration(here) > kRaise * longest) longest = required_duration(here);

@@ -10,9 +10,9 @@
 
 namespace fpbm {
 
-/// A path has a Scalar, a Space, a duration() [s], and a sample(t) for any t in any order. x, xd and xdd of the sample
-/// are displacements from the start of the tip. Before 0 and after the duration, the sample is at rest at the ends of
-/// the path.
+/// A path has a Scalar, a Space, a duration() [s], and a sample(t) for any t in any order. x of the sample is a
+/// displacement from the start position of the tip; xd and xdd are velocity and acceleration. Before 0 and after
+/// the duration, the sample is at rest at the ends of the path.
 ///
 /// A path whose acceleration is discontinuous between its ends also has sample(t, since): the sample at t of the piece
 /// that is active just after `since`. A step of an integrator then stays within one piece.
@@ -38,7 +38,7 @@ template <typename Path>
 ///
 /// With s(τ), τ = t/T, from the time law and d(s) from the shape:
 ///   x = d(s),  xd = d′ ṡ,  xdd = d″ ṡ² + d′ s̈,
-/// as displacements from the start of the tip.
+/// where x is a displacement from the start position of the tip.
 template <typename Shape, typename TimeLaw = SinSquared>
 class Path {
  public:

@@ -27,7 +27,7 @@ struct PositionTask {
 
   LinkFrame<Scalar> frame;
   TaskGains<Scalar> gains;
-  std::array<int, M> rows = first_rows();  ///< Coordinates 0 (x), 1 (y) and 2 (z), each once.
+  std::array<int, M> rows = first_rows();  ///< Coordinates 0 (x), 1 (y) or 2 (z), distinct.
   bool in_frame = false;  ///< Whether the rows are along the axes of the frame, instead of the base frame.
 
   /// Throws std::invalid_argument if the frame does not exist in the robot, or if `rows` are not different numbers from

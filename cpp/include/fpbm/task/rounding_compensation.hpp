@@ -27,8 +27,9 @@ class RoundingCompensation {
     return straightened(Space::template displace<Scalar>(from, displacement + lost_));
   }
 
-  /// Adds the part of a displacement from `from` to `to` that was lost in rounding. The sum is limited to a few last
-  /// bits, since the point may also be set to a target: limits of 1 to 400 epsilon pass TargetTurn.*, 0 fails.
+  /// Adds the part of a displacement from `from` to `to` that was lost in rounding. The sum is limited to 4 epsilon
+  /// times extent(to), since the point may also be set to a target. Limits of 1 to 400 epsilon pass TargetTurn.*, 0
+  /// fails.
   void add(const Twist& displacement, const Point& to, const Point& from) noexcept {
     lost_ += displacement - Space::template difference<Scalar>(to, from);
     const Scalar most = Scalar(4) * std::numeric_limits<Scalar>::epsilon() * extent(to);

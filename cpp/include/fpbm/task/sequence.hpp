@@ -14,7 +14,7 @@ class Sequence {
   using Scalar = typename First::Scalar;
   using Space = typename First::Space;
   static_assert(std::is_same_v<Space, typename Second::Space> && std::is_same_v<Scalar, typename Second::Scalar>,
-                "both paths have one task space and one Scalar");
+                "both paths must have the same task space and the same Scalar");
 
   Sequence(const First& first, const Second& second)
       : first_(first), second_(second), end_of_first_(first.sample(first.duration()).x) {}

@@ -76,8 +76,8 @@ inline constexpr int kLevelsOf<StackSpace<Levels...>> = static_cast<int>(sizeof.
 /// Tasks on levels in strict priority. In Stack(TaskLevel(a, b), c), a and b have equal priority, and c has a lower
 /// priority. A level with one task needs no TaskLevel.
 ///
-/// Lower levels may be disabled from tick to tick, and levels of one type may be reordered. All sizes are known at
-/// compile time.
+/// Lower levels may be disabled from tick to tick, and levels of one type may be reordered. The numbers of levels and
+/// tasks are known at compile time.
 template <typename... Levels>
 class Stack {
  public:

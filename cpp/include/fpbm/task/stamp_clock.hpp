@@ -13,14 +13,13 @@ namespace fpbm {
 ///
 /// This clock is estimated. The stamp with the smallest delay in a window of 5 to 10 s counts as not delayed, so that a
 /// drift of the clock causes an error of at most 10 s times the drift. Within the window, the estimated clock is slow
-/// by 1e-4: stamps of a clock with a smaller drift are not ahead of the estimate for long. Forward corrections of less
-/// than a tick, and all backward corrections, are smooth. A clock whose time at the first tick is known is not
-/// estimated.
+/// by 1e-4, so that the estimate follows a clock with a smaller drift. Forward corrections of less than a tick, and all
+/// backward corrections, are smooth. A clock whose time at the first tick is known is not estimated.
 ///
 /// A stamp is rejected if it is not newer than the newest stamp, or too far ahead (follows()). If at least three stamps
-/// are rejected for a whole timeout, and these stamps follow each other, the clock of the sender was reset, and the
-/// estimate starts again. After a silence of 10 s, any stamp that does not follow the newest stamp counts as a stamp of
-/// a reset clock.
+/// that follow each other are rejected over a time of at least a timeout, the clock of the sender counts as reset. The
+/// estimate then starts again. After a silence of 10 s, any stamp that does not follow the newest stamp counts as a
+/// stamp of a reset clock.
 template <typename Scalar>
 class StampClock {
  public:
@@ -97,7 +96,7 @@ class StampClock {
   static constexpr Scalar kSlow = Scalar(1e-4);
 
   /// Whether a stamp follows an earlier stamp of `since` [s] ago. The stamp is newer by `elapsed` [s], which must be
-  /// positive and at most twice `since` plus half a timeout. A simulation may run at twice the speed, and the earlier
+  /// positive and at most twice `since` plus half a timeout. A simulation may run at twice real time, and the earlier
   /// stamp may have been delayed. Factors of 1 to 8, and times from half a timeout to a timeout, pass TargetStream*.
   [[nodiscard]] bool follows(double elapsed, Scalar since) const noexcept {
     return elapsed > 0.0 && elapsed <= static_cast<double>(Scalar(2) * since + timeout_ / Scalar(2));

@@ -19,10 +19,10 @@ namespace fpbm {
 ///
 /// Each axis of the base frame moves to the target in minimum time within its bounds (TimeOptimalAxis), in the frame of
 /// the moving target. The reference does not overshoot a target at rest, and has no lag behind a target with constant
-/// velocity. The axes of an orientation are the axes of the rotation vector to the target. From rest, or from a
-/// rotation about this vector, the orientation rotates about this vector (FixedAxis): the largest angle in minimum
-/// time, the two others in proportion. A target without a message for a timeout stops in minimum time within the
-/// bounds.
+/// velocity. The axes of an orientation are the three coordinates of the rotation vector to the target. From rest, or
+/// from a rotation about this vector, the orientation rotates about this vector (FixedAxis). The largest coordinate
+/// then becomes zero in minimum time, and the other two coordinates change in proportion. A target without a message
+/// for a timeout stops in minimum time within the bounds.
 ///
 /// No bound is exceeded. After construction, no function allocates, throws or has an unbounded loop. Both statements
 /// hold for all pushed messages.

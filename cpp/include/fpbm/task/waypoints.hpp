@@ -21,7 +21,7 @@ namespace fpbm {
 ///
 /// Positions are on a quintic spline. Orientations are on a quintic spline of quaternions, scaled to unit length; the
 /// angular velocity and its derivative are exact. Only differences from the first point matter, since a path is a
-/// displacement from the start of the tip. Between two orientations, the path rotates by the smaller angle.
+/// displacement from the start position of the tip. Between two orientations, the path rotates by the smaller angle.
 template <typename Space_, typename Scalar_ = double>
 class Waypoints {
  public:
@@ -47,9 +47,9 @@ class Waypoints {
   }
 
   /// Fastest path within the bounds, which are never exceeded. The duration is at most 0.5 % longer than the shortest
-  /// duration, rounded up to a multiple of 0.01 s, so that usual steps divide the duration. The duration is divided
-  /// among the pieces as in lasting(). Throws std::invalid_argument under the conditions of lasting(), and if no bound
-  /// limits the tip.
+  /// duration. The result is then rounded up to a multiple of 0.01 s, so that usual steps divide the duration. The
+  /// duration is divided among the pieces as in lasting(). Throws std::invalid_argument under the conditions of
+  /// lasting(), and if no bound limits the tip.
   [[nodiscard]] static Waypoints within(const std::vector<Point>& points, const TipBounds<Scalar>& bounds) {
     require_bound("velocity", bounds.velocity);
     require_bound("acceleration", bounds.acceleration);

@@ -10,8 +10,8 @@ namespace fpbm {
 /// Path of positions at constant orientation of the tip, or with a rotation from rest to rest over the whole duration.
 ///
 /// The rotation is a rotation vector r along the axes of the base frame [rad] (in the plane: an angle), relative to the
-/// start of the tip: R(t) = rotation(s r) R(0). The angular velocity is exactly ṡ r, and its derivative s̈ r. To end in
-/// an orientation R, set r = rotation_vector(R R(0)ᵀ).
+/// start orientation of the tip: R(t) = rotation(s r) R(0). The angular velocity is exactly ṡ r, and its derivative
+/// s̈ r. To end in an orientation R, set r = rotation_vector(R R(0)ᵀ).
 template <typename Path, typename TimeLaw = Quintic>
 class WithRotation {
   using Positions = typename Path::Space;
