@@ -222,7 +222,7 @@ class Clearance {
     }
     validation::reject(argument, ": is too large: its lever about a joint must be finite");
   }
-  /// Whether the links differ and neither is the parent of the other. In a chain, the later link is first.
+  /// Whether a pair of links is checked: `first` is the later link, and `second` is not the parent of `first`.
   [[nodiscard]] bool may_collide(int first, int second) const noexcept {
     return first > second && robot_.parent(first) != second;
   }

@@ -58,7 +58,7 @@ class Guard {
     plan_ = {limits, start, last};
     displacement_ = plan_.displacement(limits, start, start);
     if (!advancement_.keeps_margins(clearance_, near_pairs_, displacement_, time(limits), Pairs::kStatic)) {
-      validation::reject("qd0", ": is too fast: must be slow enough for the arm to stop before all shapes");
+      validation::reject("qd0", ": is too fast: must be slow enough for the arm to stop with all margins kept");
     }
   }
 
@@ -69,7 +69,7 @@ class Guard {
   [[nodiscard]] Clearance& clearance() noexcept { return clearance_; }
   [[nodiscard]] const Clearance& clearance() const noexcept { return clearance_; }
 
-  /// Bounds on the next motion from `state`, for the pairs that are near enough to need them (PairRows).
+  /// Bounds on the next motion from `state`, for the pairs that are near enough to need bounds (PairRows).
   [[nodiscard]] Rows<N, kRows, Scalar> rows(const JointLimits& limits, const JointState& state) noexcept {
     Rows<N, kRows, Scalar> rows;
     rows.g.resize(state.q.size(), kRows);

@@ -33,8 +33,9 @@ struct JointDisplacement {
   [[nodiscard]] Scalar least_of_single_stops(const AllJoints& gradient) const noexcept {
     return gradient.cwiseProduct(low).cwiseMin(gradient.cwiseProduct(high)).sum();
   }
-  /// Whether gᵀ(s·line + t·ramp_correction) ≥ 0 along the whole trajectory, because this sum consists of nonnegative
-  /// multiples of the start velocity and −ramp_correction. start_velocity: velocities of all joints [rad/s or m/s].
+  /// Sufficient condition for gᵀ(s·line + t·ramp_correction) ≥ 0 along the whole trajectory: this sum consists of
+  /// nonnegative multiples of the start velocity and −ramp_correction. start_velocity: velocities of all joints
+  /// [rad/s or m/s].
   [[nodiscard]] bool opens(const AllJoints& gradient, const AllJoints& start_velocity) const noexcept {
     return gradient.dot(start_velocity) >= Scalar(0) && gradient.dot(ramp_correction) <= Scalar(0);
   }

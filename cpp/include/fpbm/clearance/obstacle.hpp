@@ -29,7 +29,7 @@ struct Obstacle {
 
   std::string name;
   WorldShape<Scalar> shape;
-  Vector3 velocity;       ///< Velocity of all points with which the obstacle is expected to continue [m/s].
+  Vector3 velocity;       ///< Expected velocity of all points [m/s].
   std::size_t moves = 0;  ///< Number of calls of Clearance::move().
 
   Obstacle(std::string its_name, const WorldShape<Scalar>& its_shape, const Vector3& its_velocity = Vector3::Zero())

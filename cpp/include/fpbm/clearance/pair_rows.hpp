@@ -12,7 +12,7 @@
 
 namespace fpbm {
 
-/// Bounds on the next motion, for the pairs that are near enough to need them (docs/clearance.md, "Rows").
+/// Bounds on the next motion, for the pairs that are near enough to need bounds (docs/clearance.md, "Rows").
 ///
 /// Let s be the gap of a pair, g its gradient with respect to the drives, n the normal from the second shape to the
 /// first, and v the velocity of an obstacle. After the tick, the gap must satisfy
@@ -194,7 +194,7 @@ class PairRows {
     return std::min(shortest_stop, std::sqrt(a * (a * h * h + Scalar(2) * row.gap - last)) - a * h);
   }
 
-  /// Whether a pair is a bound of a task with a largest deceleration. The stop at this deceleration may need more
+  /// Whether a pair is a bound of a task with a finite deceleration. The stop at this deceleration may need more
   /// distance than the shortest stop.
   [[nodiscard]] static bool has_deceleration(const Clearance& clearance, const ShapePair& pair) noexcept {
     return &pair >= clearance.pairs().data() + clearance.shape_pairs() &&

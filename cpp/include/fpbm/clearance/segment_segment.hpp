@@ -35,7 +35,8 @@ struct NearestOfSegments {
     const Vector3 c = cross(u, v);
     const Scalar uu = u.squaredNorm();
     const Scalar vv = v.squaredNorm();
-    // Nearest points of the lines. For nearly parallel lines, |c|² = (u·u)(v·v) − (u·v)² would lose half of the digits.
+    // Nearest points of the lines. For nearly parallel lines, |c|² in the form (u·u)(v·v) − (u·v)² would lose half of
+    // the digits.
     s = fraction(c.dot(cross(v, w)), c.squaredNorm());
     t = fraction(v.dot(w + s * u), vv);
     if (t == Scalar(0) || t == Scalar(1)) s = fraction(u.dot(t * v - w), uu);

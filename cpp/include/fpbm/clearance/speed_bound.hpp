@@ -10,7 +10,7 @@ namespace fpbm {
 ///
 /// v is the velocity of the body after the tick and after the acceleration is reduced to zero. The joint velocities are
 /// then q̇ + acting_ticks h u, or q̇ + acting_ticks (u − q̇) at velocity level. n is the direction of v. The speed may
-/// still exceed the bound by the change of the direction within the tick, or if the other rows and the joint limits
+/// still exceed the bound because the direction changes within the tick, or if the other rows and the joint limits
 /// admit no motion within the bound. placed: memory for the bodies in the middle of the tick.
 template <Level kLevel, typename Clearance, int N, int P, typename Scalar>
 void bound_speeds(const Clearance& clearance, typename Clearance::Placement& placed,

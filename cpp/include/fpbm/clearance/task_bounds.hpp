@@ -10,7 +10,8 @@
 
 namespace fpbm {
 
-/// Bounds on the position p of the origin of a frame in the base frame, for each coordinate, and on its speed:
+/// Bounds on the position p of the origin of a frame in the base frame, for each coordinate, and on the speed of the
+/// origin:
 ///
 ///   lowerᵢ ≤ pᵢ ≤ upperᵢ        ‖(ṗᵢ)‖ ≤ velocity, over the coordinates of `rows`
 ///

@@ -4,8 +4,8 @@
 
 namespace fpbm {
 
-/// Limits::box_in_time(), with the bounds of `tick` that the bound on jerk does not restrict, copied bit for bit. tick:
-/// Limits::box() for this tick. last: acceleration of the last tick.
+/// Limits::box_in_time(), where the bounds that the bound on jerk does not restrict are copied from `tick` bit for bit.
+/// tick: Limits::box() for this tick. last: acceleration of the last tick.
 ///
 /// Limits::box_in_time() and Limits::box() compute these bounds by iteration, with different errors. If a goal exceeded
 /// a bound of `tick` by the difference of the errors, the whole motion would be scaled down because of a joint on this

@@ -19,13 +19,13 @@ namespace fpbm {
 template <int kMost, int kEntries, typename Scalar>
 class HeldJoints {
  public:
-  // The ranges below are those of double with which `fpbm_tests --gtest_filter='DegenerateSaturation*'` passes.
+  // In double, `fpbm_tests --gtest_filter='DegenerateSaturation*'` passes with the ranges below.
 
   static constexpr Scalar kEpsilon = std::numeric_limits<Scalar>::epsilon();
   /// Smallest length of the independent part of a joint's row of Z, for a joint that is held in addition: about √ε. The
   /// independent part is orthogonal to the rows of the held joints. A shorter part is mostly round-off error. A slow
-  /// joint may be held with a shorter part, if the round-off error of the direction of the part, ε/part, times the
-  /// motion, rate/part, is at most 1. Range: 1e-10 to 1e-6.
+  /// joint may be held with a shorter part if (ε/part)(rate/part) ≤ 1: ε/part is the round-off error of the direction
+  /// of the part, and rate/part is the motion. Range: 1e-10 to 1e-6.
   static constexpr Scalar kIndependent = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-8) : Scalar(3e-4);
 
   /// A joint with a shorter independent part does not move in the null space: this part is the round-off error of a

@@ -42,7 +42,7 @@ struct JerkLimitedJoint {
   VelocityEnvelope<kLevel, Scalar> lower;  ///< For −q.
   Scalar tick;                             ///< h [s]
 
-  /// Whether any state that differs from `at` by at most `error` is viable. Velocities may be differences of positions
+  /// Whether some state that differs from `at` by at most `error` is viable. Velocities may be differences of positions
   /// over a tick.
   [[nodiscard]] bool viable(const AxisState<Scalar>& at, const AxisState<Scalar>& error = {}) const noexcept {
     return is_far_from_bounds(at) || is_viable_near_bounds(at, error);
@@ -106,7 +106,7 @@ struct JerkLimitedJoint {
   }
 
   /// Upper bound on the excess over an envelope that a stop adds [rad] or [m]: v (t + c/d + v/2d) for velocities up to
-  /// v = fastest [rad/s], if the excess is largest within the time t = longest [s].
+  /// v = fastest [rad/s], if the excess has its maximum within the time t = longest [s].
   [[nodiscard]] static Scalar excess_bound(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar fastest,
                                            Scalar longest) noexcept {
     return fastest * (longest + envelope.delay + fastest * envelope.softness / Scalar(2));
@@ -141,7 +141,7 @@ struct JerkLimitedJoint {
     const Scalar inverse_jerk = Scalar(1) / stop.jerk;
     const Scalar gain = greatest * (tick + greatest * inverse_jerk / Scalar(2));
     // Most joints are far from all bounds, and pass this test of some.high: no velocity of the stop exceeds `top`, and
-    // the excess is largest within the time `longest`.
+    // the excess has its maximum within the time `longest`.
     const Scalar top = std::max(qd + gain, Scalar(0));
     const Scalar longest = tick + (stop.acceleration + greatest) * inverse_jerk;
     if (gain <= speed_slack && q - envelope.stop_position + excess_bound(envelope, top, longest) <= Scalar(0)) {
@@ -157,8 +157,8 @@ struct JerkLimitedJoint {
     const Scalar found =
         largest_below_zero(excess, some.low, from > Scalar(0) ? high : std::clamp(falling, some.low, high), rounds);
     if (found > some.low) return found;
-    // No acceleration above some.low keeps the envelope. A joint that is at its end because of round-off stops there:
-    // with some.low, the joint would leave its end at full jerk.
+    // No acceleration above some.low keeps the envelope. If the excess is only round-off error, the joint stops at its
+    // end: with some.low, the joint would leave its end at full jerk.
     const Scalar halts = std::clamp(-qd / tick, some.low, high);
     return excess(halts) <= round_off(envelope, q) ? halts : found;
   }
@@ -188,9 +188,9 @@ struct JerkLimitedJoint {
     return qd > Scalar(0) && next < Scalar(0) ? std::max(excess, from - qd * qd / (Scalar(2) * u)) : excess;
   }
 
-  /// Result of viable() if few iterations find no acceleration that keeps the envelopes of both ends. More iterations
-  /// find an acceleration, unless round-off errors prevent this. If round-off errors prevent this, the bound on
-  /// velocity has priority, and both envelopes are exceeded equally.
+  /// Result of viable() if few iterations find no acceleration that keeps the envelopes of both ends. After
+  /// more iterations, only round-off errors can prevent a result. In this case, the bound on velocity has priority, and
+  /// both envelopes are exceeded equally.
   [[nodiscard, gnu::noinline]] Interval<Scalar> least_excess(Interval<Scalar> some, Scalar q,
                                                              Scalar qd) const noexcept {
     const Interval<Scalar> mirrored{-some.high, -some.low};

@@ -15,18 +15,18 @@ namespace fpbm {
 /// Freedom f of the direction b of a task, from 0 (blocked) to 1. The motion u keeps the direction b, and the motion
 /// `other` does not (docs/limits.md, Saturation in the null space):
 ///
-///   min((J u · b)/(0.3 J other · b), 1) min((σ_b/σ₀)², 1),    σ_b = ‖Jᵀb‖/(‖J‖‖b‖)
+///   min((J u · b)/(0.3 J other · b), 1) min((σ_b/0.3)², 1),    σ_b = ‖Jᵀb‖/(‖J‖‖b‖)
 ///
-/// The first factor compares the parts of the task that both motions realise. If the parts are small because the demand
-/// is large, u realises a large fraction of the part of `other`, and the first factor is not small. If the parts are
-/// small because the posture loses the direction b, the second factor is small.
+/// The first factor compares the part of the task that u realises with the part that `other` realises. If both parts
+/// are small because the demand is large, the first factor is not small. If both parts are small because the posture
+/// loses the direction b, the second factor is small.
 template <int M, int N, typename Scalar>
 [[nodiscard]] Scalar freedom(const Matrix<M, N, Scalar>& J, const Vector<M, Scalar>& task, const Vector<N, Scalar>& u,
                              const Vector<N, Scalar>& other) noexcept {
   // `fpbm_tests --gtest_filter='Yield*'` prints how many of 800 motions keep their direction: 796 or more for each
   // factor from 0.03 to 0.3, and less than 504 with 0.6.
   constexpr Scalar kKeptFraction = Scalar(0.3);
-  constexpr Scalar kLostSigma = Scalar(0.3);  // σ₀
+  constexpr Scalar kLostSigma = Scalar(0.3);
   const Scalar most = kKeptFraction * dot(product(J, other), task);
   const Scalar size = kLostSigma * kLostSigma * squared_norm(J) * squared_norm(task);
   if (!(most > Scalar(0) && size > Scalar(0))) return Scalar(0);

@@ -21,9 +21,9 @@ namespace fpbm {
 /// Computes a motion within the joint limits from the motion of any scheme (docs/limits.md).
 ///
 /// A motion within the box of Limits does not change. Otherwise the motion is saturated in the null space: other joints
-/// compensate for joints on their bounds. If they cannot, the task is scaled down along its direction. If the task
-/// scale is nearly zero, for example at the workspace boundary, the arm would stop permanently. Therefore, the smaller
-/// the scale, the more the motion is blended with a motion that still reduces the tip error
+/// compensate for joints on their bounds. If no joints can compensate, the task is scaled down along its direction. If
+/// the task scale is nearly zero, for example at the workspace boundary, the arm would stop permanently. Therefore, the
+/// smaller the scale, the more the motion is blended with a motion that still reduces the tip error
 /// (blend_with_least_squares()).
 ///
 /// With bounds on jerk, the limiter works in two passes (docs/limits.md, Bounds on jerk). The first pass ignores the

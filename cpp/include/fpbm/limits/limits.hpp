@@ -20,7 +20,7 @@ namespace fpbm {
 /// A state is viable if the velocity of every joint is within its bound and within the braking envelopes of both ends
 /// of the range. From a viable state, some acceleration within its bound, constant for one tick of length h, leads to a
 /// viable state, and every joint can stop (viability: Del Prete 2018, here in discrete time). The envelope of a bound A
-/// on acceleration has the offset A h/2, the cost of one tick of delay.
+/// on acceleration has the offset A h/2, because of the discretisation.
 ///
 /// box() is the set of accelerations that lead to a viable state, or the set of velocities at velocity level. A motion
 /// in the box never violates a bound, at ticks or between ticks. Joints with a bound on jerk have another viable set
@@ -146,8 +146,7 @@ class Limits {
   [[nodiscard]] Box<N, Scalar> box(const State<N, Scalar>& state, const JointVector& last) const noexcept {
     return box_of(state, [&](Eigen::Index i, const auto& joint) { return joint.after(last(i)); });
   }
-  /// box() without regard to the last tick: the motions that are admissible after the jerk has changed the
-  /// accelerations.
+  /// box() without regard to the last tick: the bound on jerk restricts only the following ticks.
   [[nodiscard]] Box<N, Scalar> box_in_time(const State<N, Scalar>& state) const noexcept {
     return box_of(state, [](Eigen::Index, const auto& joint) { return joint.after_any(); });
   }

@@ -16,11 +16,11 @@ namespace fpbm {
 ///
 ///   min (u − u₀)ᵀ H (u − u₀)   where g_k·u ≤ b_k,   H = JᵀB⁻¹J + I.
 ///
-/// With B = μI, null-space motion has the cost μ relative to a change of the task. Larger entries of B reduce the cost
-/// of changes of the task in their directions.
+/// With B = μI, null-space motion has the cost μ relative to a change of the task. In the directions of larger
+/// eigenvalues of B, a change of the task has a lower cost.
 ///
-/// Solved by the dual active-set method (D. Goldfarb, A. Idnani 1983): violated rows become active one by one, and an
-/// active row whose multiplier decreases to zero is released. The result is a continuous function of all inputs.
+/// The dual active-set method (D. Goldfarb, A. Idnani 1983) solves the problem: violated rows become active one by one,
+/// and an active row whose multiplier decreases to zero is released. The result is a continuous function of all inputs.
 template <int M, int N, int P, typename Scalar>
 class RowProjection {
  public:
@@ -44,8 +44,8 @@ class RowProjection {
     }
   }
 
-  /// The nearest motion. If `solved` is set, the result is exact up to round-off. Otherwise, no motion or almost no
-  /// motion satisfies the rows.
+  /// The nearest motion. If `solved` is set, the result is exact up to round-off. Otherwise, the rows are infeasible or
+  /// nearly infeasible.
   [[nodiscard]] JointVector operator()(const JointVector& desired) noexcept {
     u_ = desired;
     count_ = 0;

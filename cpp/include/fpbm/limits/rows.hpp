@@ -9,7 +9,7 @@
 
 namespace fpbm {
 
-/// Bounds g_k·u ≤ b_k on joint motions, in addition to a box: count rows, at most P.
+/// Bounds g_k·u ≤ b_k on joint motions, in addition to a box: `count` rows, at most P.
 template <int N, int P, typename Scalar = double>
 struct Rows {
   Matrix<N, P, Scalar> g;  ///< Column k is g_k.

@@ -29,8 +29,8 @@ struct TaskChange {
 /// J⁺J, ν = ‖N v‖²/‖v‖² is the fraction of v that null-space motion can realise: 1 if v does not change the task, 0 if
 /// null-space motion contributes nothing. inverse_task_metric() uses δ and ν.
 ///
-/// Solved by a fixed number of rounds of Hildreth's method (C. Hildreth 1957), so that the result is a continuous
-/// function of all inputs.
+/// A fixed number of rounds of Hildreth's method (C. Hildreth 1957) solves the problem, so that the result is a
+/// continuous function of all inputs.
 template <int M, int N, int P, typename Scalar>
 [[nodiscard]] TaskChange<M, Scalar> smallest_task_change(const Matrix<M, N, Scalar>& J, Scalar mu,
                                                          const Rows<N, P, Scalar>& rows,

@@ -18,7 +18,7 @@
 
 namespace fpbm {
 
-/// State of a Tracker from tick to tick, and the end of a tick.
+/// State of a Tracker from tick to tick. finish_tick() ends a tick.
 ///
 /// If an RK4 step keeps every bound, the tick is this step. Otherwise the mean motion of the step is limited (Limiter).
 /// If only the position at the end of the step violates a bound, the tick has the mean acceleration of the step
@@ -218,8 +218,8 @@ class LimitedState {
     return tick_.after(u);
   }
 
-  /// Desired motion within the limits. If the scheme failed, the arm has stalled, or stop() was called, the braking
-  /// motion.
+  /// Desired motion within the limits. If the arm has stalled, or each joint brakes by itself (brakes()), the result is
+  /// the braking motion.
   template <int P>
   [[nodiscard, gnu::noinline]] JointVector limited_motion(const Kinematics<Space, N, Scalar>& kinematics,
                                                           const JointVector& desired, const Rows<N, P, Scalar>& rows,

@@ -21,7 +21,7 @@ namespace fpbm {
 /// in the null space of the higher levels while limits slow them, and the robot would not stop.
 ///
 /// The largest error of each task in a window of stall_time is compared with the largest errors in earlier windows. A
-/// task makes progress if its error is below the errors of all earlier windows by 1/16. A task of a lower level stops
+/// task makes progress if its error is below 15/16 of the errors of all earlier windows. A task of a lower level stops
 /// if it makes no progress, its error exceeds 0.0001, no target has moved by 0.002 (TaskDistance), and no task makes
 /// progress of more than 0.002. The reference of a stopped task is its current point at zero velocity.
 ///

@@ -71,8 +71,8 @@ class MeasuredLimiter {
     return toward_goal(saturation, box, rows, box.nearest(last), found.u, found);
   }
 
-  /// As Limiter::brake(). At the end of the stop, the velocities decay as exp(−t/D). A low-pass filter with the time
-  /// constant D/2 reduces noise. Large changes of the command are not filtered.
+  /// As Limiter::brake(). At the end of the stop, the velocities decay as exp(−t/D), D = kRest H. A low-pass filter
+  /// with the time constant D/2 reduces noise. Large changes of the command are not filtered.
   [[nodiscard]] SaturatedMotion<N, Scalar> brake(const JointState& state, const JointVector& last) const noexcept {
     if (!delayed_) return limiter_.brake(state, last);
     const Scalar D = kRest * limits().tick();
@@ -130,8 +130,8 @@ class MeasuredLimiter {
       const Scalar d = std::min({joint.deceleration, joint.acceleration, Scalar(16) * range / (T * T)});
       joint.velocity_offset = std::isfinite(d) ? T * d : Scalar(0);
       joint.deceleration = d;
-      // At the end that Limits receives, the velocity of the envelope is −velocity_offset. At the end of the range,
-      // this velocity must be zero.
+      // At the bound on position that is passed to Limits, the envelope is −velocity_offset. At the end of the range,
+      // the envelope must be zero.
       const Scalar extension = std::isfinite(d) ? T * T * d / Scalar(2) : Scalar(0);
       joint.upper += extension - end;
       joint.lower -= extension - end;

@@ -18,8 +18,8 @@ template <typename Loop, typename Limiter, typename LimitedState, typename Space
   auto& guard = tracker_state.guard();
   auto rows = guard.rows(limits, measured);
   if constexpr (LimitedState::kGuarded) {
-    // If the tip rotates, the direction of its velocity after a tick of the limits differs from the direction after a
-    // tick of the loop. Therefore, both ticks have rows.
+    // If the tip rotates, the direction of its velocity after the time limits.tick() differs from the direction after
+    // the time dt(). Therefore, rows are added for both times.
     guard.bound_speeds(limits, measured, loop.qdd, rows);
     const Scalar fraction = tracker_state.dt() / limits.tick();
     if (fraction < Scalar(1)) guard.bound_speeds(limits, measured, fraction * loop.qdd, rows);

@@ -9,7 +9,7 @@
 namespace fpbm {
 
 /// Follows a path from the position of a tip. The follower has a clock that can pause and resume. The reference stays
-/// on the path, and the clock does not cause jumps of its velocity and acceleration.
+/// on the path, and the clock does not cause jumps of the reference velocity and acceleration.
 ///
 /// The reference at the path time p = ∫ r dt is x(p), x′(p) r, x″(p) r² + x′(p) ṙ. After the end of the path, the
 /// reference is at rest there. The rate r of the clock changes to 0 or 1 along a cubic in time. The duration of the

@@ -181,7 +181,7 @@ class Recovery {
   JointVector goal_;
   /// Distance from this target to the tip of the last recovery.
   Scalar last_distance_ = std::numeric_limits<Scalar>::infinity();
-  /// Largest distance of the target from the nearest remembered tip since the task was lost.
+  /// Largest distance of the target from the nearest remembered tip since the last settle().
   Scalar farthest_ = Scalar(0);
   bool returned_ = false;              ///< Whether the return of this target has caused a recovery.
   Scalar start_distance_ = Scalar(0);  ///< Distance to the posture at the start of the recovery.

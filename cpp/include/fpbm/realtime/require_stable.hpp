@@ -71,9 +71,9 @@ void require_stable_gains(const NamedGains<Scalar>& gains, const TickOfGains<Sca
 }
 
 /// Largest stiffness kₚh² of the null space at acceleration level. RK4 is stable up to 6. But a stiff spring moves the
-/// joints so far within a tick that its acceleration disturbs the task in the new posture. Of 18 rest postures at 0.3
-/// rad per joint, with critical damping at 1 ms, none loses the task at 0.03, two at 0.1 and five at 0.25
-/// (TickGains.a_stiff_rest_posture_does_not_change_the_task).
+/// joints so far within a tick that its acceleration disturbs the task in the new posture. Of 18 rest postures, 0.3
+/// rad per joint from the start posture, with critical damping at 1 ms, none loses the task at 0.03, two at 0.1 and
+/// five at 0.25 (TickGains.a_stiff_rest_posture_does_not_change_the_task).
 inline constexpr double kSpring = 0.1;
 
 /// Whether a scheme has the members of this library for its parameters.
@@ -96,7 +96,7 @@ inline constexpr bool kHasSprings<Scheme, std::void_t<decltype(Scheme::null_spac
 
 /// Throws std::invalid_argument if a tick does not damp the errors that a scheme feeds back: the task error, with k₁
 /// and k₂ or k, and with the tracker's integral; the null-space error, with the smallest and the largest stiffness of
-/// the joints. Accepts a scheme without these members. For a scheme type of your own, an overload in its namespace is
+/// the joints. Accepts a scheme without these gains. For a scheme type of your own, an overload in its namespace is
 /// used.
 template <typename Scheme, typename Scalar>
 void require_stable(const Scheme& scheme, const TickOfGains<Scalar>& tick) {

@@ -76,7 +76,7 @@ template <typename... Levels, typename Scalar, typename... Sources>
     return ahead(sources..., seconds);
   } else {
     static_assert(sizeof...(Sources) == std::tuple_size_v<typename Space::template Point<Scalar>>,
-                  "a tick of a stack takes a source of references for each task");
+                  "a tick of a stack needs a source of references for each task");
     const auto parts = std::make_tuple(source_ahead(sources, seconds)...);
     Reference<Space, Scalar> all = Reference<Space, Scalar>::hold(Space::template origin<Scalar>());
     Space::each([&](auto space, auto i, int row) noexcept {

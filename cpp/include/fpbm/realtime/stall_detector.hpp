@@ -13,14 +13,14 @@ namespace fpbm {
 
 /// Detects an arm that makes no progress toward its target (docs/realtime.md, Unreachable targets).
 ///
-/// Progress is an error below the smallest error so far by a step, or a displacement of the target by more than 0.002
+/// Progress is a decrease of the smallest error by more than a step, or a displacement of the target by more than 0.002
 /// (TaskDistance). The arm has stalled if there is no progress for stall_time. The arm continues if its target or a
 /// shape near it moves.
 ///
 /// If limits slow the arm, or its target is far, a step is 0.002, and errors below 0.002 do not count. If the arm also
 /// crawls, with every joint below 1 % of its velocity bound, a step is at least 1/16 of the smallest error. If the arm
-/// is only damped, it may approach its target slowly: a step is 1/64 of the smallest error, and errors below 0.0001 do
-/// not count.
+/// is only damped, it may approach its target slowly: a step is 1/64 of the smallest error, at most 0.002, and errors
+/// below 0.0001 do not count.
 template <typename Space, typename Scalar = double>
 class StallDetector {
  public:

@@ -54,11 +54,12 @@ struct TrackerOptions {
   /// [rad]. A larger error, for example of an unreachable target, does not increase the feedback. Default:
   /// Stall.is_not_a_slow_approach passes with 0.1 to 1, and fails with 0.03.
   Scalar error_bound = Scalar(0.1);
-  /// Gain kᵢ of ∫(x ⊖ f(q)) dt, which is added to the acceleration [1/s³] or velocity [1/s²] of the reference. It
-  /// removes the steady-state error due to a constant bias (PID feedback: Guo et al. 2018). Stable below k₁k₂
-  /// (docs/realtime.md, Integral of the error). The integral is constant while the task is slowed or damped, or the
-  /// error exceeds error_bound. Each task of a stack has an integral. integral_bound: largest contribution of the
-  /// integral [characteristic lengths and radians per s², or per s]. The default of integral_bound is not tuned.
+  /// Gain kᵢ of ∫(x ⊖ f(q)) dt, which is added to the acceleration [1/s³] or velocity [1/s²] of the reference. The
+  /// integral removes the steady-state error due to a constant bias (PID feedback: Guo et al. 2018). At acceleration
+  /// level, the loop is stable for kᵢ < k₁k₂ (docs/realtime.md, Integral of the error). The integral is constant while
+  /// the task is slowed or damped, or the error exceeds error_bound. Each task of a stack has an integral.
+  /// integral_bound: largest contribution of the integral [characteristic lengths and radians per s², or per s]. The
+  /// default of integral_bound is not tuned.
   Scalar integral_gain = Scalar(0);
   Scalar integral_bound = Scalar(1);
   /// If an arm is slowed, or farther than error_bound from its target, and makes no progress for this time [s], the arm

@@ -11,10 +11,10 @@ namespace fpbm {
 /// Executes a whole motion of a tracker with a path follower, one tick for each time of the grid.
 ///
 /// `record(const Sample&, const Tick&)` is called once per tick, and must be noexcept. If `record` returns false, the
-/// motion ends. Sample k contains the state at t_k, the tip error in this state, and the reference of the follower. Its
-/// qdd is the mean acceleration of the tick that starts at t_k. The step of the grid must be the tick of the tracker.
-/// The motion does not stop at a failure: the status of the result is the most severe status of all ticks. Neither
-/// throws nor allocates.
+/// motion ends. Sample k contains the state at t_k, the tip error in this state, and the reference of the follower. The
+/// qdd of sample k is the mean acceleration of the tick that starts at t_k. The step of the grid must be the tick of
+/// the tracker. The motion does not stop at a failure: the status of the result is the most severe status of all ticks.
+/// Neither throws nor allocates.
 template <typename Tracker, typename Follower, typename Scalar, typename Recorder>
 RolloutResult<Tracker::N, Scalar> track(Tracker& tracker, Follower& follower, const TimeGrid<Scalar>& grid,
                                         Recorder&& record) noexcept {

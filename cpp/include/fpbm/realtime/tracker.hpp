@@ -159,9 +159,9 @@ class Tracker {
   }
 
   /// For a tick whose RK4 step is computed elsewhere (TrackerBatch). begin(): error at the start of the tick. Returns
-  /// whether references must be corrected() before the step. finish(): `now` is the reference at the start of the tick,
-  /// not corrected. `middle` is the corrected reference in its middle. `next` is the state after the step. `at_start`
-  /// is the motion at the start: joint velocities, or accelerations at acceleration level.
+  /// whether corrected() must replace the references before the step. finish(): `now` is the reference at the start of
+  /// the tick, not corrected. `middle` is the corrected reference in the middle of the tick. `next` is the state after
+  /// the step. `at_start` is the motion at the start: joint velocities, or accelerations at acceleration level.
   bool begin(const Vector<Space::kRows, Scalar>& error, Scalar length) noexcept {
     limited_.correction().begin(error, length);
     return limited_.correction().active();

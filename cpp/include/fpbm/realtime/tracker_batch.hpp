@@ -21,7 +21,7 @@ namespace fpbm {
 ///
 /// The RK4 step of a tick is computed in lanes. Each tracker ends its tick by itself. Therefore limits are kept
 /// exactly, and every tick equals the tick of its tracker alone from the same state, up to round-off. If limits are
-/// active for seconds, especially bounds on jerk, a motion amplifies round-off errors as much as a change of the start
+/// active for seconds, especially bounds on jerk, a motion amplifies round-off errors like a change of the start state
 /// (docs/sweeps.md). If the step of a lane is not finite (near a singular posture, or because the scheme fails), the
 /// tracker of this lane computes the whole tick. No lane influences another lane.
 template <typename Tracker, typename Arm, typename Space, typename Scheme>
