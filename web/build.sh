@@ -10,7 +10,7 @@ headers=$(cd "$here/../cpp/include" && pwd)
 eigen=${EIGEN:-/usr/include/eigen3}
 
 no_page() {
-    echo "No page that moves: $1."
+    echo "The page is not built: $1."
     exit 0
 }
 command -v em++ > /dev/null || no_page "em++ is missing (Debian: emscripten)"
@@ -21,7 +21,7 @@ mkdir -p "$work" "$(dirname "$out")"
 if ! test -e "$work/node_modules/.package-lock.json" || ! cmp -s "$here/package-lock.json" "$work/package-lock.json"; then
     cp "$here/package.json" "$work"
     cp "$here/package-lock.json" "$work/package-lock.json"
-    (cd "$work" && npm ci --no-audit --no-fund > npm.log 2>&1) || no_page "npm could not fetch what it needs, see $work/npm.log"
+    (cd "$work" && npm ci --no-audit --no-fund > npm.log 2>&1) || no_page "npm could not fetch the packages, see $work/npm.log"
 fi
 
 # With a separate link, because em++ does not search /usr/include.

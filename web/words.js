@@ -25,7 +25,7 @@ export const ARMS = [
 
 export const SCHEME_WORDS = [
   "The minimum joint velocity for the motion of the tip.",
-  "The minimum joint velocity. Joints with a larger weight move less.",
+  "The minimum weighted joint velocity. Joints with a larger weight move less.",
   "The minimum joint acceleration, without feedback of the tip error.",
   "WMVN at acceleration level, without feedback of the tip error.",
   "Wang et al., 2019: a balance of MAN and WMVN, with feedback of the tip error.",

@@ -67,7 +67,8 @@ struct Arm : Model {
 };
 
 /// Calls visitor(arm, Space) with the task space of that name, and with a pointer to the AnyArm, null for a robot.
-/// Throws std::invalid_argument if the task does not exist, or a robot has no stack.
+/// Throws std::invalid_argument if the task does not exist or has more rows than the arm has joints, or if a robot has
+/// no stack.
 template <typename Visitor>
 auto visit_space(const Model& model, const std::string& task, bool has_stack, Visitor&& visitor) {
   if (const auto* arm = dynamic_cast<const Arm*>(&model)) {

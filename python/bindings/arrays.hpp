@@ -25,7 +25,7 @@ inline bool is_candidate(const PyObject* /*object*/) {
 }
 
 /// Any input of numpy.asarray: the argument is checked and converted here, so that the ValueError for a wrong argument
-/// has its name.
+/// has the name of the argument.
 class ArrayLike : public py::object {
  public:
   PYBIND11_OBJECT_DEFAULT(ArrayLike, py::object, is_candidate)

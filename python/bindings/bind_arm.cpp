@@ -93,7 +93,7 @@ AnyKinematics given(const ArrayLike& tip, const ArrayLike& J, const OptionalArra
   return {known, Jd.has_value()};
 }
 
-/// The shape of tip determines the task space; with three numbers, the task also does.
+/// The shape of tip determines the task space, for three numbers together with the task.
 AnyKinematics make_kinematics(const ArrayLike& tip, const ArrayLike& J, const OptionalArray& Jd,
                               const std::string& task) {
   if (task != "position" && task != "pose") {

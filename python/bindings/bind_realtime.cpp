@@ -80,8 +80,8 @@ class PyTracker {
   using Stacked = std::unique_ptr<StackLoop>;
   using Any = std::variant<Held<Position<2>>, Held<PlanarPose>, Held<Position<3>>, Held<Pose>, Stacked>;
 
-  /// Calls visitor(tracker, Space) with the tracker of a single task. Throws std::invalid_argument with the required
-  /// arguments of a tracker of a stack.
+  /// Calls visitor(tracker, Space) with the tracker of a single task. If the tracker has a stack, throws
+  /// std::invalid_argument with the remedy.
   template <typename Visitor>
   auto visit(const char* remedy, Visitor&& visitor) const {
     return std::visit(
@@ -328,7 +328,7 @@ keep_first_level : bool
     Whether the first level of a stack, for example a grasp of two arms, has priority over speed. The lower levels leave
     the first level a reserve of the limits: 0.7 of each bound on acceleration and 0.35 of each bound on velocity. stop
     keeps the first level: its references are held at rest, and the joints come to rest in its null space. A task that
-    is farther than 0.001 characteristic lengths, or 0.001 rad, from its reference stays where it is.
+    is farther than 0.001 characteristic lengths, or 0.001 rad, from its reference stays at its current point.
 measured_delay : int
     Largest age of the states for resolve_measured [ticks]: the time from the measurement to the start of the tick in
     which the robot realises the result. 0: exact present states, as in a simulation.

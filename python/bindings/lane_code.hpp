@@ -4,7 +4,7 @@
 
 namespace fpbm::bindings {
 
-// The code of each task space is in a separate file, which limits the memory of the compiler.
+// Positions and poses are compiled in separate units (CMakeLists.txt), which limits the memory of the compiler.
 [[nodiscard]] RunInLanes<Position<2>> plane_in_lanes() noexcept;
 [[nodiscard]] RunInLanes<Position<3>> position_in_lanes() noexcept;
 [[nodiscard]] RunInLanes<Pose> pose_in_lanes() noexcept;

@@ -18,7 +18,7 @@ struct Model {
       if (joint.mimic.joint < 0) joint_names.push_back(joint.name);
     }
   }
-  virtual ~Model() = default;  // Polymorphic, so that Python gets an object of its own class back.
+  virtual ~Model() = default;  // Polymorphic, so that Python gets an object of the derived class.
 
   [[nodiscard]] int dof() const noexcept { return robot.dof(); }
   [[nodiscard]] const JointLimits<kDynamic>& limits() const noexcept { return robot.limits(); }

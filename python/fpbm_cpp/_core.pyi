@@ -650,7 +650,7 @@ class Tracker:
         Whether the first level of a stack, for example a grasp of two arms, has priority over speed. The lower levels leave
         the first level a reserve of the limits: 0.7 of each bound on acceleration and 0.35 of each bound on velocity. stop
         keeps the first level: its references are held at rest, and the joints come to rest in its null space. A task that
-        is farther than 0.001 characteristic lengths, or 0.001 rad, from its reference stays where it is.
+        is farther than 0.001 characteristic lengths, or 0.001 rad, from its reference stays at its current point.
     measured_delay : int
         Largest age of the states for resolve_measured [ticks]: the time from the measurement to the start of the tick in
         which the robot realises the result. 0: exact present states, as in a simulation.

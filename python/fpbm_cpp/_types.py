@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 
 if TYPE_CHECKING:
-    # Types of data class fields that can be assigned values of more types than the type that they return.
+    # Types of data class fields that accept values of more types than they return.
 
     class ArrayField:
         def __get__(self, thing: object, owner: Any = None) -> Array: ...

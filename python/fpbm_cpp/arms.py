@@ -109,8 +109,8 @@ class Arm(Data, CoreArm):
 class PlanarArm(Arm):
     """Planar arm of n revolute joints.
 
-    The tip is f(q) = sum_i l_i (cos th_i, sin th_i) with th_i = q_1 + ... + q_i. Each joint angle [rad] is relative to
-    the previous link, and the first to the x axis of the base frame. The pose of the tip is (x, y, th_n).
+    The tip is f(q) = sum_i l_i (cos th_i, sin th_i) with th_i = q_1 + ... + q_i. Joint angles [rad] are relative to
+    the previous link; the first angle is relative to the x axis of the base frame. The pose of the tip is (x, y, th_n).
 
     Raises ParameterError if a length is out of range, or if there are too few or too many lengths.
     """
@@ -128,8 +128,8 @@ class SerialArm(Arm):
 
     Joint positions are in radians or metres. The placement of the first joint is in the base frame.
 
-    Raises ParameterError if an axis is zero, a number is not finite, a matrix is not a frame, or bounds leave no range
-    for a joint.
+    Raises ParameterError if there are too few or too many joints, an axis is zero, a number is out of range or not
+    finite, a matrix is not a frame, or bounds leave no range for a joint.
     """
 
     kind: ClassVar[str] = "joints"

@@ -18,9 +18,9 @@ class Capsule(Data, Shape):
 
     kind: ClassVar[str] = "capsule"
     link: int = parameter(
-        "Number of joints in arm.joints that move the link; 0 is the base. The frame of link 0 is the base frame. The "
-        "frame of another link is the frame of joint number link after the motion of the joint, placement_1 "
-        "motion_1(q_1) ... placement_link motion_link(q_link).",
+        "Number of the link: link i is the child of joint i, counted from 1; 0 is the base. The frame of link 0 is the "
+        "base frame. The frame of another link is the frame of its joint after the motion of the joint, in a SerialArm "
+        "placement_1 motion_1(q_1) ... placement_link motion_link(q_link).",
         NOT_NEGATIVE,
     )
     a: ArrayField = parameter("One end of the segment, in the link's frame.", shape="(3,)", unit="m")

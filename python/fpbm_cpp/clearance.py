@@ -101,7 +101,7 @@ class Clearance(Data):
         margin: float = MARGIN,
         allowed: Sequence[tuple[str, str]] = (),
     ) -> Clearance:
-        """Clearance of Robot.from_arms(arms, placements), with the capsules of a clearance of each arm.
+        """Clearance of Robot.from_arms(arms, placements), with the capsules of the arms' clearances.
 
         Capsule 'panda_link5' of arm 'left' becomes 'left_panda_link5'. The allowed pairs are those of the clearances
         and those in `allowed`. An arm without a clearance has no capsules.
@@ -154,8 +154,8 @@ class Clearance(Data):
         positions at which the robot fixes them.
 
         Each link gets one capsule, or up to per_link capsules if their volume is smaller. Unless per_link is 1, a link
-        gets one more capsule if its capsules would often be closer than the margin to the capsules of another link
-        although the distance of the two links is larger. srdf is an SRDF file of MoveIt, whose disabled pairs are
+        gets one more capsule if its capsules would often be closer to the capsules of another link than the margin
+        although the links are not. srdf is an SRDF file of MoveIt, whose disabled pairs are
         allowed pairs, in addition to `allowed`. Needs the extra 'clearance'; only meshes need its packages trimesh and
         pycollada.
 

@@ -31,7 +31,7 @@ class ParameterError(ValueError):
         return f"{self.name}{self.problem}"
 
     def within(self, table: str) -> ParameterError:
-        """The error of the argument with this name in a table: 'radius' becomes 'path.radius'."""
+        """This error with the name of the table before the name of the argument: 'radius' becomes 'path.radius'."""
         name = f"{table}.{self.name}"
         return ParameterError(name, self.index, self.value, name + self.problem)
 

@@ -50,11 +50,12 @@ class NamedFrame(Data):
 class Robot(Data, CoreRobot):
     """A tree of revolute, continuous and prismatic joints, which may include mimic joints.
 
-    Joint positions, in radians or metres, are those of the joints with a drive, in the order of joints. A Tracker of a
+    The joint positions, in radians or metres, belong to the joints with a drive, in the order of joints. A Tracker of a
     robot needs a stack of tasks, each of a frame: 'base', a name in frames, or the name of a joint.
 
-    Raises ParameterError if an axis is zero, a number is not finite, the parent link of a joint does not come before
-    the joint, two frames share a name, or bounds leave no range for a joint.
+    Raises ParameterError if there are too few or too many joints, an axis is zero, a number is out of range or not
+    finite, the parent link of a joint does not come before the joint, two frames share a name, or bounds leave no range
+    for a joint.
     """
 
     kind: ClassVar[str] = "tree"

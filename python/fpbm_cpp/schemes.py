@@ -42,7 +42,7 @@ class Scheme(Data, CoreScheme):
     )
     manipulability_gain: float = parameter(
         "Gain up the gradient of sqrt(det(J J')) (Yoshikawa, 1985). At acceleration level, also set null_damping: "
-        "without damping, the oscillation does not decay.",
+        "without damping, the oscillation of the joints does not decay.",
         SQUARED,
         default=0.0,
     )

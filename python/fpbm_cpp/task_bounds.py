@@ -42,7 +42,7 @@ class TaskBounds(Data):
         unit="m/s, rad/s",
     )
     acceleration: float = parameter(
-        "Deceleration before lower and upper; for an axis, of the cosine of the angle. Default: as the joints admit.",
+        "Largest deceleration toward lower and upper; for an axis, of the cosine of the angle. Default: no bound.",
         POSITIVE,
         default=inf,
         infinite=True,

@@ -528,7 +528,7 @@ def test_capsules_in_a_job(folder: Path) -> None:
         ([*MOTION, *FILES, "--margin", "x"], "--margin = 'x': must be a number"),
         ([*MOTION, *FILES, "--per-link", "0"], "--per-link = 0: must be a whole number, at least 1"),
         ([*MOTION, *FILES, "--margin", "0.5"], "--q0: l"),
-        (["panda", "--clearance", "arm.urdf"], "clearance.tip = '': must be a link; its branches end in 'l7'"),
+        (["panda", "--clearance", "arm.urdf"], "clearance.tip = '': must be a link; branches end in 'l7'"),
     ],
 )
 def test_command_errors_have_one_line(folder: Path, arguments: list[str], line: str) -> None:

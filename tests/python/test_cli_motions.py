@@ -331,10 +331,10 @@ TWO_BRANCHES = """<robot name="two"><link name="base"/><link name="camera"/><lin
         (["planar:1,-1"], "lengths[1] = -1: must be positive and finite"),
         (["none.urdf", "--tip", "tool"], "cannot read none.urdf: No such file or directory"),
         (["none.urdf"], "cannot read none.urdf: No such file or directory"),
-        (["two.urdf"], "--tip = '': must be a link; its branches end in 'hand', 'camera'"),
+        (["two.urdf"], "--tip = '': must be a link; branches end in 'hand', 'camera'"),
         (
             ["two.urdf", "--tip", "hnd"],
-            "--tip = 'hnd': must be a link, perhaps 'hand'; its branches end in 'hand', 'camera'",
+            "--tip = 'hnd': must be a link, perhaps 'hand'; branches end in 'hand', 'camera'",
         ),
         (["panda", "--tip", "tool"], "--tip: is not a key of preset: must be one of name"),
         (["panda", "--radius", "-1"], "--radius = -1: must be positive and finite"),

@@ -549,7 +549,7 @@ def test_errors_have_one_line(arm: Path, tmp_path: Path, monkeypatch: pytest.Mon
     bad = arm.parent / "nowhere.urdf"
     assert_rejected(call(bad, *to_out), f"cannot read {bad}: No such file or directory")
     assert_rejected(call(tmp_path, *to_out), f"cannot read {tmp_path}: Is a directory")
-    leaves = "its branches end in 'tip'"
+    leaves = "branches end in 'tip'"
     assert_rejected(call(arm, "--tip", "top", "-o", out), f"tip = 'top': must be a link, perhaps 'tip'; {leaves}")
     assert_rejected(call(arm, *to_out, "--base", "x"), f"base = 'x': must be a link; {leaves}")
     broken = tmp_path / "broken.urdf"

@@ -51,7 +51,7 @@ def test_joints(name: str, array: str, label: str) -> None:
         assert axes.get_xlabel() == "time [s]"
         np.testing.assert_array_equal(np.transpose([line.get_ydata() for line in own_lines(axes)]), getattr(run, array))
     names = [text.get_text() for text in axes.get_legend().get_texts() if text.get_text() != "bound"]
-    assert names == ["rail (slides)", *run.arm.joint_names[1:]]
+    assert names == ["rail (prismatic)", *run.arm.joint_names[1:]]
 
 
 def test_bounds_are_drawn_near_a_joint() -> None:

@@ -613,12 +613,12 @@ def test_links_with_no_chain_between(tip: str, base: str, message: str, write) -
 @pytest.mark.parametrize(
     ("tip", "base", "message"),
     [
-        ("hnad", None, "tip = 'hnad': must be a link, perhaps 'hand'; its branches end in 'hand', 'right'"),
-        ("lift", None, "tip = 'lift': must be a link, perhaps 'left'; its branches end in 'hand', 'right'"),
-        ("", None, "tip = '': must be a link; its branches end in 'hand', 'right'"),
-        (None, None, "tip = None: must be a link; its branches end in 'hand', 'right'"),
-        ("hand", "tors", "base = 'tors': must be a link, perhaps 'torso'; its branches end in 'hand', 'right'"),
-        ("hand", "", "base = '': must be a link; its branches end in 'hand', 'right'"),
+        ("hnad", None, "tip = 'hnad': must be a link, perhaps 'hand'; branches end in 'hand', 'right'"),
+        ("lift", None, "tip = 'lift': must be a link, perhaps 'left'; branches end in 'hand', 'right'"),
+        ("", None, "tip = '': must be a link; branches end in 'hand', 'right'"),
+        (None, None, "tip = None: must be a link; branches end in 'hand', 'right'"),
+        ("hand", "tors", "base = 'tors': must be a link, perhaps 'torso'; branches end in 'hand', 'right'"),
+        ("hand", "", "base = '': must be a link; branches end in 'hand', 'right'"),
     ],
 )
 def test_unknown_links_are_rejected(tip: str, base: str | None, message: str, write) -> None:

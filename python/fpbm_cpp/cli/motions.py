@@ -163,8 +163,9 @@ def servo(request: Request, port: int, browser: bool) -> None:
     The tracker runs 1000 ticks per second on this machine's clock. A chart shows how close the joints are to their
     bounds, and a sentence gives the reason if the arm does not reach the handle. The meshes of a URDF file and the
     shapes of the clearance are drawn; arrows move obstacles that are boxes or capsules. If a job has tasks, each task
-    has a handle. For a robot, each --task is a frame with a handle: pose tasks, two on each level, and a posture task
-    on the level below. Ctrl-C ends the command. For ARM and the options, see track; the path of a job is ignored.
+    has a handle. For a robot, each --task gives a frame a handle and a pose task. Each level has two of these
+    tasks, and a posture task is on the level below. Ctrl-C ends the command. For ARM and the options, see track; the
+    path of a job is ignored.
     """
     motion = request.motion(at_rest=True, limited=True)
     with _served():

@@ -103,7 +103,10 @@ def _job_options(kind: bool, path: bool, clear: bool) -> Iterator[JobOption]:
         for key in dict.fromkeys(key for each in keys for key in keys[each]):
             having = [each for each in keys if key in keys[each]]
             yield _option(section, key, keys[having[0]][key], of=having if len(having) < 3 else [])
-    text = "Keep the arm's limits, with the changes below. Arms without acceleration bounds need some: e.g. 10 rad/s^2."
+    text = (
+        "Keep the arm's limits, with the changes below. Arms without acceleration bounds need --limit-acceleration: "
+        "e.g. 10 rad/s^2."
+    )
     if path:
         yield JobOption("limits", "keep", "--limits/--no-limits", help=text)
     for key, declared in known("limits").items():

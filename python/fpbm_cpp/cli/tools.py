@@ -148,9 +148,9 @@ def export_header(
 ) -> None:
     """Write a URDF file, or a preset such as panda or two_pandas, as a C++ header.
 
-    With one --tip, the header constructs the arm from base to tip. With several, the header constructs the robot: the
-    tree of the joints that move the tips, with these links as frames. Without --tip, the robot has all joints and links
-    of the file. A program with the header reads no file.
+    With one --tip, the header constructs the arm from base to tip. With several --tip, the header constructs the robot:
+    the tree of the joints that move the tips, with these links as frames. Without --tip, the robot has all joints and
+    links of the file. A program with the header reads no file.
     """
     from ..io import write_whole
     from ..io.header import export_header, export_tree, namespace_of

@@ -21,7 +21,7 @@ from .urdf import Places, read_places
 from .urdf_shapes import Shape, read_shapes, together
 from .urdf_tree import read_tree
 
-FAIR = 0.85  # A link gets several capsules if their volume is at most this fraction of the volume of one.
+FAIR = 0.85  # A link gets several capsules if their volume is at most this fraction of the volume of one capsule.
 CUTS = 6  # A shape is cut at the ends of this number of equal parts.
 ALIKE = 0.95  # Cosine of the angle between directions that count as equal.
 MANY = 12  # Largest number of shapes of a link for which groups of shapes are tried.

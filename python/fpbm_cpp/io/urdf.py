@@ -126,7 +126,7 @@ def _hint(above: Tree, link: str) -> str:
     leaves = (name for name in above if name not in parents)
     ends = sorted(leaves, key=lambda name: -_moving(_to_root(above, "tip", name)))
     close = difflib.get_close_matches(link, list(above)[:300])  # A search of thousands of names is slow.
-    return (f", perhaps {' or '.join(map(repr, close))}" if close else "") + f"; its branches end in {listed(ends)}"
+    return (f", perhaps {' or '.join(map(repr, close))}" if close else "") + f"; branches end in {listed(ends)}"
 
 
 def follows_of(branch: Iterable[UrdfJoint], mimics: Mapping[str, Follow | None]) -> dict[str, Follow]:

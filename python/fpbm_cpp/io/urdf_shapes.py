@@ -60,7 +60,7 @@ class Shape:
 
         A plane that cuts a face cuts its edges: the remaining parts of the edges and of the face have the same hull. At
         the plane, the face gets a new edge, which a later plane may cut. The new edge is inside the convex hull of the
-        section; the sides of this hull are kept. If a plane cuts a side, the side joins the edges.
+        section; the sides of this hull are kept. If a plane cuts a side, the side becomes an edge.
         """
         kept, cut = _clipped(self.edges, u, low, high)
         sides_kept, sides_cut = _clipped(self.sides, u, low, high)

@@ -276,7 +276,7 @@ def ready(arm: Arm | Robot, task: str, stack: Stack | None = None) -> list[float
 def _jacobians(arm: Arm | Robot, q: Array, task: str, stack: Stack | None) -> Iterator[tuple[Jacobian, Any]]:
     """Jacobians that must not be singular, of the tip or of each frame of a robot's tasks, and their joints.
 
-    The joints of a frame are those that move none of the other frames, if there are at least six.
+    The joints of a frame are the joints that move only this frame; if these are fewer than six, all that move it.
     """
     if not isinstance(arm, Robot):
         yield lambda q: arm.jacobian(q, task=task), np.arange(arm.dof)

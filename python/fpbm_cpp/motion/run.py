@@ -84,7 +84,7 @@ class Run:
         x_ref minus x: linear rows [m], then, for a pose, angular rows [rad] (in space, a rotation vector).
     status, arm, path, scheme, task, options
         End of the motion, and the arguments that produced it; options are the other keyword arguments: dt, hold, stack,
-        ... task is 'position' or 'pose'; for a stack, the name of the task that follows the path, or of the first.
+        ... task is 'position' or 'pose'; for a stack, the name of the task of x, x_ref and error.
     scale, saturated : numpy.ndarray, shapes (N,) and (N, n), or None
         Of track() only: the task scale, from 0 (the arm brakes) to 1 (the whole task), and which joints are on a bound.
     clearance : numpy.ndarray, shape (N,), or None

@@ -119,7 +119,7 @@ def track(
 ) -> Run:
     """Move an arm along a path under a scheme, within its joints' limits and through singular postures.
 
-    The motion is that of a Tracker: every joint keeps its bounds, the motion is damped near singular postures, and the
+    A Tracker moves the arm: every joint keeps its bounds, the motion is damped near singular postures, and the
     motion never stops early. Sample k has the state and the tip's error at t_k. The mean acceleration, the task scale
     and the joints on a bound are those of the tick that starts at t_k. The status is the worst of all ticks: OK,
     DAMPED, SLOWED, BLOCKED or STALLED; without damping, the status may be SINGULAR, if the arm brakes at a singular

@@ -160,7 +160,7 @@ def sweep(
         Also keep the whole motions, in the result's motions: 8 bytes for each number in the arrays of simulate().
     """
     if isinstance(arm, Robot):
-        raise wrong("arm", arm, f" = {arm}: must be an arm; simulate() and track() take a Robot")
+        raise wrong("arm", arm, f" = {arm}: must be an arm; simulate() and track() accept a Robot")
     laws = (schemes,) if isinstance(schemes, Scheme) else tuple(schemes)
     if not laws:
         raise wrong("schemes", schemes, ": must have at least one scheme")

@@ -74,8 +74,8 @@ def run_chunks(
 def interrupted_at_checks() -> Iterator[Callable[[], None]]:
     """A function to call at safe points: a Ctrl-C raises KeyboardInterrupt at these points only.
 
-    A KeyboardInterrupt during the acquisition of one of Python's own locks would never release this lock. Does nothing
-    outside the main thread, or if the program has its own handler for Ctrl-C.
+    After a KeyboardInterrupt during the acquisition of one of Python's own locks, the lock would stay locked. Does
+    nothing outside the main thread, or if the program has its own handler for Ctrl-C.
     """
     pressed, process = False, os.getpid()
 

@@ -25,7 +25,7 @@ def plot_run(
 
     The text is 9 points high. The figure is two columns of a paper wide, or one column for few panels without an arm.
     The default title has the scheme and the path. panels are names from PANELS; default: all except the components of
-    the error. Panels without data are left out: 'scale' and 'saturation' without joint limits, 'clearance' without a
+    the error. Panels without data are left out: for example 'saturation' without joint limits, 'clearance' without a
     clearance, 'axis_orientation_errors' if the task is a position. dark: dark background. Raises ValueError if a panel
     is unknown or given twice, or no panel has data.
     """

@@ -40,7 +40,7 @@ LINK = {"lw": 1.8, "marker": "o", "ms": 3.8, "mew": 0.5, **ROUND}
 def arm_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
     """Postures at equal intervals of time, the tip's path and its target, and the tip's axes at the end.
 
-    For a Robot, path, target and axes of each task that follows a path. An arm in space needs axes with
+    For a Robot, the panel has path, target and axes of each task that follows a path. An arm in space needs axes with
     projection='3d', a planar arm axes without a projection.
     """
     t, q = (run.t, run.q) if len(run.t) else (np.zeros(1), run.status.q[None])
@@ -165,7 +165,7 @@ def acceleration_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
 def joint_names(arm: Arm | Robot) -> list[str]:
     """Names of the joints for a legend; prismatic joints are marked if there are also revolute joints."""
     names, units = joint_labels(arm), joint_units(arm)
-    return [f"{name} (slides)" if unit == "m" and "rad" in units else name for name, unit in zip(names, units)]
+    return [f"{name} (prismatic)" if unit == "m" and "rad" in units else name for name, unit in zip(names, units)]
 
 
 def unit_of(runs: Sequence[Run], per: str) -> str:

@@ -73,8 +73,8 @@ def _of_remarks(paper: Paper, fpbm: FPBM, results: Sequence[Result]) -> Iterator
         _verdict(max(changes) > 1e-9, "corrected (only ratios matter)"),
         f"W → 2W changes q, qd and qdd over the whole motion by at most {changes[0]:.2g}, W → 1000W by "
         f"{changes[1]:.2g} (rad, rad/s, rad/s²). Norm of the final joint velocity in Tables 2 and 3, rad/s: "
-        f"{' < '.join(f'{r.case.row} {_speed(r.run):.3f}' for r in rows)}. The largest entries of all, "
-        f"{largest.case.weights}, are number {rows.index(largest) + 1} of {len(rows)}: equal entries have no effect.",
+        f"{' < '.join(f'{r.case.row} {_speed(r.run):.3f}' for r in rows)}. The largest entries, "
+        f"{largest.case.weights}, have rank {rows.index(largest) + 1} of {len(rows)}: equal entries have no effect.",
     )
 
     moved, middle = _moved_on_hold(paper, fpbm), CIRCLES // 2

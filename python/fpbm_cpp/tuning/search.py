@@ -54,7 +54,7 @@ def with_numbers(scheme: FPBM, changes: Mapping[str, float]) -> FPBM:
 class Space:
     """The schemes that differ from a baseline in some numbers, one for each point of the unit cube.
 
-    names has the number of each coordinate. Raises ValueError if the search or the baseline is invalid.
+    names has the name of each coordinate's number. Raises ValueError if the search or the baseline is invalid.
     """
 
     def __init__(self, search: Mapping[str, ArrayLike] | None, baseline: FPBM, dof: int) -> None:

@@ -57,11 +57,12 @@ def view(
 ) -> None:
     """Show an arm on its path in the browser, with sliders for the scheme's parameters, until Ctrl-C.
 
-    Prints the address of the page. A change of the scheme or of a parameter on the page repeats the motion, which is
-    that of simulate(). A motion that stops early is shown up to the stop. For a stack, one task follows the path, and
-    the page shows the errors of all tasks. The class fpbm_cpp.viewer.Viewer serves the page without waiting.
+    Prints the address of the page. A change of the scheme or of a parameter on the page repeats the motion by
+    simulate(), or by track() if the page keeps joint limits. A motion that stops early is shown up to the stop. For a
+    stack, one task follows the path, and the page shows the errors of all tasks. The class fpbm_cpp.viewer.Viewer
+    serves the page without waiting.
 
-    urdf is the URDF file of the arm. The meshes of the file are drawn, with joints that the arm does not have at zero.
+    urdf is the URDF file of the arm. The meshes of the file are drawn. Joints that the arm does not have are at zero.
     Without urdf, the arm is drawn as rods and cylinders. Only this machine can open the page, unless host is '0.0.0.0'
     or an address on a network. Port 0 selects a free port.
 

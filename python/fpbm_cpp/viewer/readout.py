@@ -74,7 +74,7 @@ def table(rows: Iterable[Sequence[str]]) -> str:
 
 
 def quantities(playback: Playback) -> dict[str, tuple[Array, str]]:
-    """Values at the frames, and their unit; for a column per joint, the unit follows the unit of the joint position."""
+    """Values at the frames, and their unit; for a column per joint, the suffix of the joint position's unit."""
     run, at = playback.run, playback.frames
     found = {"joint velocities": (run.qd[at], "/s"), "joint accelerations": (run.qdd[at], "/s²")}
     found["joint positions"] = run.q[at], ""
