@@ -227,7 +227,7 @@ TEST(Task, names_the_invalid_argument_for_a_tree) {
   EXPECT_EQ(bound(PoseTask<>{{kTip}, gains}),
             "frame = -1: must be the number of a link: a tree has no tip, name one of its frames");
   EXPECT_EQ(bound(RelativePoseTask<>{{{9}, gains}, {17}}), "frame = 17: must be the number of a link, at most 16");
-  EXPECT_EQ(bound(CenterOfMassTask<>{gains}), "robot: has no mass: give masses of links");
+  EXPECT_EQ(bound(CenterOfMassTask<>{gains}), "robot has no mass: give the mass of at least one link");
 }
 
 TEST(Direction, difference_turns_one_to_the_other) {

@@ -248,7 +248,7 @@ def test_a_tracker_of_a_robot_needs_a_stack(write) -> None:
     task = fp.PositionTask("left", reference_frame="left_shoulder")
     with pytest.raises(ParameterError, match="reference_frame: moves with the task's frame"):
         fp.Tracker(robot, fp.MVN(), np.zeros(5), stack=fp.Stack(task))
-    with pytest.raises(ParameterError, match="robot: has no mass"):
+    with pytest.raises(ParameterError, match="robot has no mass"):
         fp.Tracker(robot, fp.MVN(), np.zeros(5), stack=fp.Stack(fp.CenterOfMassTask()))
 
 

@@ -38,7 +38,7 @@ using Number = typename NumberOf<Scalar>::type;
   return !truth;
 }
 
-/// Sets the lanes of value whose mask is false to NaN. Has no effect on a single number: a Status reports its failure.
+/// Sets the lanes of value whose mask is false to NaN. Has no effect on a single number: a Status reports the failure.
 template <typename Masks, typename Scalar>
 void set_nan_unless([[maybe_unused]] const Masks& truth, [[maybe_unused]] Scalar& value) noexcept {
   if constexpr (kInLanes<Scalar>) {

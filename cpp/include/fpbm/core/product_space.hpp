@@ -8,8 +8,7 @@
 
 namespace fpbm {
 
-/// Task space of several tasks: a point has one point of each space, and the rows of the spaces follow one after
-/// another.
+/// Task space of several tasks: a point is a tuple of one point of each space, and the rows of the spaces are stacked.
 ///
 /// The first kFirst spaces belong to the first task level.
 template <int First, typename... Spaces>
@@ -49,8 +48,8 @@ struct ProductSpace {
     return result;
   }
 
-  /// Calls f(space, i, row) for each space. i is the index of the space as a std::integral_constant, row the index of
-  /// its first row.
+  /// Calls f(space, i, row) for each space. i is the index of the space as a std::integral_constant. row is the index
+  /// of the first row of the space.
   template <typename F>
   static void each(F&& f) noexcept {
     each(f, std::index_sequence_for<Spaces...>{});

@@ -20,8 +20,8 @@ template <Eigen::Index I>
   return i + 1;
 }
 
-/// Largest size for which loops are unrolled. With 4, a step of a Panda's position takes a third longer. With 16, steps
-/// of planar arms of 10 to 16 joints take 7 to 14 % less time, but the code is 20 % larger (g++ 12, -O2).
+/// Largest size for which loops are unrolled. With 4, a step of a position task of a Panda takes a third longer. With
+/// 16, steps of planar arms of 10 to 16 joints take 7 to 14 % less time, but the code is 20 % larger (g++ 12, -O2).
 inline constexpr int kUnrolled = 8;
 
 /// Size as a Constant if N is at most kUnrolled, else as a number at run time.

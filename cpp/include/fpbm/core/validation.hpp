@@ -115,7 +115,7 @@ void require_finite(const Argument& argument, const Scalar& values) {
   });
 }
 
-/// Balance between two schemes: requires 0 ≤ value ≤ 1.
+/// Fraction: requires 0 ≤ value ≤ 1.
 template <typename Scalar, typename = Mask<Scalar>>
 void require_fraction(const Argument& argument, const Scalar& values) {
   each_number(values, [&](auto value) {
@@ -150,7 +150,7 @@ void require_joint_vector(const Argument& argument, const Eigen::MatrixBase<Deri
 inline void require_dof(const Argument& argument, Eigen::Index dof, int task_rows) {
   if (dof < task_rows || dof > kMaxDof) {
     reject_value(argument, dof, " has ", dof, " entries: must have ", task_rows, " to ", kMaxDof,
-                 ", one per joint, and no fewer than the task has rows");
+                 ", one per joint, and at least one per task row");
   }
 }
 

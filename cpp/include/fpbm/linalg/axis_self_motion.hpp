@@ -139,7 +139,8 @@ class AxisSelfMotion {
       {3, 5, 0, 1, 2, 4}, {2, 3, 0, 1, 4, 5}, {1, 3, 0, 2, 4, 5}, {0, 3, 1, 2, 4, 5}, {2, 5, 0, 1, 3, 4},
       {1, 5, 0, 2, 3, 4}, {0, 5, 1, 2, 3, 4}, {1, 2, 0, 3, 4, 5}, {0, 2, 1, 3, 4, 5}, {0, 1, 2, 3, 4, 5}};
   /// A pair is a hand if det² A_T is more than 1/kSpans of det AAᵀ, the sum of det² of all 15 pairs. At least one pair
-  /// has 1/15 of the sum (docs/equations.md, Degree of redundancy 1). The value 20 leaves a margin for round-off.
+  /// has at least 1/15 of the sum (docs/equations.md, Degree of redundancy 1). The value 20 leaves a margin for
+  /// round-off.
   static constexpr auto kSpans = 20.0F;
 
   /// Entry i of K b_w: motion of joint i of the hand that produces the angular rows b_w.

@@ -79,7 +79,7 @@ class EigenpairsBelow {
   static constexpr Scalar kLeast = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-128) : Scalar(1e-6);
 
   /// T ← HᵀTH makes T tridiagonal, where H is a product of reflections I − share v vᵀ. values: the diagonal; beside(i):
-  /// the entry between i and i + 1. Column k of T becomes v of reflection k.
+  /// entry (i + 1, i). Column k of T becomes v of reflection k.
   void make_tridiagonal() noexcept {
     const auto m = extent<M>(T_.rows());
     const auto column = [&](Eigen::Index j) noexcept { return T_.data() + j * m; };

@@ -13,8 +13,8 @@ template <typename Result, int Rows, int Cols, typename Scalar, typename F>
 [[nodiscard, gnu::always_inline]] inline Matrix<Rows, Cols, Result> entrywise_as(const Matrix<Rows, Cols, Scalar>& size,
                                                                                  const F& f) noexcept {
   Matrix<Rows, Cols, Result> result;
-  // Largest unrolled size. 7 to 32 give the same time for a step of a Panda's position; with 4, the step takes 23 %
-  // longer (g++ 12, -O2).
+  // Largest unrolled size. 7 to 32 give the same time for a step of a position task of a Panda; with 4, the step takes
+  // 23 % longer (g++ 12, -O2).
   constexpr Eigen::Index kMost = 16;
   if constexpr (Rows != Eigen::Dynamic && Cols != Eigen::Dynamic && Eigen::Index{Rows} * Cols <= kMost) {
     constexpr Eigen::Index kSize = Eigen::Index{Rows} * Cols;

@@ -9,7 +9,7 @@
 
 namespace fpbm {
 
-/// Lower triangle of JJᵀ, computed two rows at a time. Entries above the diagonal are not all set.
+/// Lower triangle of JJᵀ, computed two rows at a time. Some entries above the diagonal are not set.
 template <int M, int N, typename Scalar>
 [[nodiscard]] Matrix<M, M, Scalar> lower_gram(const Matrix<M, N, Scalar>& J) noexcept {
   if constexpr (M == Eigen::Dynamic) {

@@ -14,7 +14,7 @@
 namespace fpbm {
 
 /// Σ f(i) over the entries of a matrix. Sums of up to four terms are written out, so that a compiler keeps them in
-/// registers. Limits of 1 to 7 terms give the same time for a step of a Panda's position (g++ 12, -O2).
+/// registers. Limits of 1 to 7 terms give the same time for a step of a position task of a Panda (g++ 12, -O2).
 template <typename Plain, typename F>
 [[nodiscard]] auto sum_over(const Eigen::PlainObjectBase<Plain>& size, const F& f) noexcept {
   constexpr int kFew = 4;

@@ -8,8 +8,8 @@
 
 namespace fpbm {
 
-/// Symmetric tridiagonal matrix T. QL steps make T diagonal. values: the diagonal; beside(i): the entry between i and
-/// i + 1. The initial matrix is V T Vᵀ with the orthonormal vectors V (Golub and Van Loan, Matrix Computations, 8.3).
+/// Symmetric tridiagonal matrix T. QL steps make T diagonal. values: the diagonal; beside(i): entry (i + 1, i). The
+/// initial matrix is V T Vᵀ with the orthonormal vectors V (Golub and Van Loan, Matrix Computations, 8.3).
 template <int M, typename Scalar>
 struct Tridiagonal {
   using Column = Vector<M, Scalar>;
@@ -67,7 +67,7 @@ struct Tridiagonal {
   }
 
  private:
-  static constexpr int kSteps = 30;  // As in EISPACK's tql2. 6 pass `*EigenpairsBelowOf*`, 3 fail.
+  static constexpr int kSteps = 30;  // As in EISPACK's tql2. With 6, `*EigenpairsBelowOf*` passes; with 3, fails.
 
   /// One QL step on the entries from first to last.
   void step_from(Eigen::Index last, Eigen::Index first, Scalar shift) noexcept {

@@ -13,15 +13,16 @@ void require_mass(const Robot& robot) {
   for (int link = 0; link <= robot.joints(); ++link) {
     if (robot.mass(link).mass > 0) return;
   }
-  validation::reject("robot", ": has no mass: give masses of links");
+  validation::reject("robot", " has no mass: give the mass of at least one link");
 }
 
 /// Computes the centre of mass of a robot, base included [m], and the velocity [m/s], J and J̇ of the centre of mass,
 /// along the axes of the base frame.
 ///
-/// The links have masses mᵢ at cᵢ, and m = Σ mᵢ. m_j = Σ mᵢ and s_j = Σ mᵢ cᵢ are sums over the links that joint j
-/// moves. Column j of J is z × (s_j − m_j p_j)/m for a revolute joint with the axis z through p_j, and z m_j/m for a
-/// prismatic joint along z. J̇ is the derivative of J, with ż = w × z (docs/equations.md, Time derivative of J).
+/// The links have masses mᵢ at cᵢ, and m = Σ mᵢ. Joint j moves links of the total mass m_j and the mass moment
+/// s_j = Σ mᵢ cᵢ. Column j of J is z × (s_j − m_j p_j)/m for a revolute joint with the axis z through p_j, and z m_j/m
+/// for a prismatic joint along z. J̇ is the derivative of J, with ż = w × z and the angular velocity w of link j + 1
+/// (docs/equations.md, Time derivative of J).
 template <int N, typename Scalar, int Joints>
 void center_of_mass(const Robot<N, Scalar, Joints>& robot, const RobotState<N, Scalar, Joints>& state,
                     Vector<3, Scalar>& centre, Vector<3, Scalar>& velocity, Matrix<3, N, Scalar>& J,

@@ -107,8 +107,8 @@ class Drives {
     const auto count = static_cast<Eigen::Index>(source.joints.size());
     Eigen::Index drives = 0;
     for (Eigen::Index i = 0; i < count; ++i) drives += joint_of(source, i).mimic.joint < 0 ? 1 : 0;
-    validation::require_dof("joints with a drive", drives, 1);
-    if constexpr (N != Eigen::Dynamic) validation::require_size("joints with a drive", drives, N);
+    validation::require_dof("list of joints with a drive", drives, 1);
+    if constexpr (N != Eigen::Dynamic) validation::require_size("list of joints with a drive", drives, N);
     return drives;
   }
 

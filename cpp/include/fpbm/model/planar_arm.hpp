@@ -70,7 +70,7 @@ class PlanarArm {
                                                     Kinematics<Space, N, Scalar>& out) const noexcept {
     constexpr bool kWithOrientation = std::is_same_v<Space, PlanarPose>;
     static_assert(kWithOrientation || std::is_same_v<Space, Position<2>>,
-                  "a planar arm has tasks Position<2> and PlanarPose");
+                  "a planar arm needs Position<2> or PlanarPose as Space");
     const auto n = extent<N>(lengths_.size());
     const auto pairs = pairs_of(n);
     out.J.resize(Space::kRows, n);

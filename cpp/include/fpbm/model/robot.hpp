@@ -132,8 +132,9 @@ class Robot {
   /// base frame: linear rows [m] above angular rows [rad]. Returns the velocity of the point [m/s].
   ///
   /// Column i of J is [l; a] = [z × (p − pᵢ); z] for a revolute joint, and [z; 0] for a prismatic joint. Column i of J̇
-  /// is [wᵢ × l + a × uᵢ; wᵢ × a], where uᵢ = Σ_{j>i} q̇ⱼ lⱼ (docs/equations.md, Time derivative of J). The columns of
-  /// joints that do not move the link are 0. J̇ is 0 if the state has no velocities.
+  /// is [wᵢ × l + a × uᵢ; wᵢ × a], where wᵢ is the angular velocity of link i + 1, and uᵢ = Σ_{j>i} q̇ⱼ lⱼ
+  /// (docs/equations.md, Time derivative of J). The columns of joints that do not move the link are 0. J̇ is 0 if the
+  /// state has no velocities.
   template <typename F>
   [[gnu::always_inline]] Vector3 columns(const State& state, int link, const Vector3& p, const F& f) const noexcept {
     if constexpr (Drives_::kMayFollow) {
@@ -163,7 +164,7 @@ class Robot {
   template <int M>
   Vector3 jacobian(const State& state, int link, const Vector3& p, Matrix<M, N, Scalar>& J,
                    Matrix<M, N, Scalar>& Jd) const noexcept {
-    static_assert(M == 3 || M == 6, "a frame has 3 linear rows, and 3 angular ones");
+    static_assert(M == 3 || M == 6, "M must be 3 (linear rows) or 6 (linear and angular rows)");
     J.resize(M, dof());
     Jd.resize(M, dof());
     return columns(state, link, p, [&](Eigen::Index i, const auto& columns, const auto& rates) noexcept {

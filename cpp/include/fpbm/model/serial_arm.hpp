@@ -109,7 +109,7 @@ class SerialArm {
                                                     Kinematics<Space, N, Scalar>& out) const noexcept {
     constexpr bool kWithOrientation = std::is_same_v<Space, Pose>;
     static_assert(kWithOrientation || std::is_same_v<Space, Position<3>>,
-                  "a serial arm has tasks Position<3> and Pose");
+                  "a serial arm needs Position<3> or Pose as Space");
     using Axes = Screws<N, Scalar>;
     // g++ keeps axes and tip in memory if they are members of one object. A separate tip would occupy registers that
     // the columns need, and the kinematics would need 3 % more instructions (make count).

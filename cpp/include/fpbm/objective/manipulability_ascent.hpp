@@ -35,7 +35,7 @@ struct ManipulabilityAscent {
   /// Throws std::invalid_argument if a parameter is for another number of joints.
   void require_dof(Eigen::Index dof) const {
     scheme.require_dof(dof);
-    validation::require_size("the arm of the ascent", arm.dof(), dof);
+    validation::require_size("joint vector of ManipulabilityAscent::arm", arm.dof(), dof);
   }
 
   /// Joint velocities [rad/s] or accelerations [rad/s²]. The motion of the tip is the motion of the wrapped scheme.

@@ -21,8 +21,8 @@ namespace fpbm {
 /// one more part, and throws std::invalid_argument if a value is out of range.
 ///
 /// Repetitive motion planning (Zhang and others, Mechatronics 18, 2008) removes the drift of the joints on closed
-/// paths. This scheme is a rest posture at the start: at velocity level with stiffness λ, at acceleration level with
-/// stiffness λ² and damping 2λ (critical damping).
+/// paths. With the gain λ, this scheme equals a rest posture at the start posture: at velocity level with stiffness λ,
+/// at acceleration level with stiffness λ² and damping 2λ (critical damping).
 template <int N, typename Scalar = double>
 class NullSpace {
  public:

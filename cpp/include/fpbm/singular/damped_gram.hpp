@@ -31,7 +31,7 @@ template <int kTurns, int M, int N, typename Scalar>
 [[nodiscard]] Scalar squared_norm_in_metres(const Matrix<M, N, Scalar>& J,
                                             [[maybe_unused]] const Scalar& length) noexcept {
   if constexpr (M == Eigen::Dynamic) {
-    static_assert(kTurns == 0, "rows of a number that is known at run time are in metres");
+    static_assert(kTurns == 0, "if the number of rows is known at run time only, all rows must be in metres");
     return squared_norm(J);
   } else {
     const Scalar* column = J.data();
@@ -69,8 +69,8 @@ class DampedGram {
 
   /// Factorises JC, given rows = (JC)ᵀ and an upper bound on the largest eigenvalue of W⁻¹ (for a pair: of the first
   /// W). Returns kDamped if Δ is not zero, or the reason for a missing factorisation. If J has a factorisation and no
-  /// angular rows, and damping is on, sigma, unless null, is set to the lower bound 1/√tr((JJᵀ)⁻¹) on σ_min(J). This
-  /// requires a pair, or W = I.
+  /// angular rows, and damping is on, sets *sigma, unless sigma is null, to the lower bound 1/√tr((JJᵀ)⁻¹) on σ_min(J).
+  /// This bound requires a pair, or W = I.
   [[nodiscard]] Status factor(const Matrix<N, M, Value>& rows, Scalar inverse_bound,
                               [[maybe_unused]] Scalar* sigma = nullptr) noexcept {
     if constexpr (kTurns > 0) {
@@ -190,7 +190,7 @@ class DampedGram {
   SingularDamping<Scalar> damping_;
   const Matrix<M, N, Scalar>& J_;
   Scalar length_;
-  Matrix<N, M, Value> rows_;       ///< (DJC)ᵀ. Not set in regular postures without angular rows.
+  Matrix<N, M, Value> rows_;       ///< (DJC)ᵀ. Not set if kTurns = 0 and the posture is regular.
   RowFactor<M, N, Value> factor_;  ///< Factorisation of DJC.
   Cholesky<M, Value> damped_;      ///< Factorisation of D(JW⁻¹Jᵀ)D + Δ, if Δ ≠ 0.
   Scalar lost_{0};                 ///< tr Δ/ε², about the number of lost directions.

@@ -32,7 +32,7 @@ class DampedLevel {
   explicit DampedLevel(Scalar epsilon_squared) noexcept : epsilon_squared_(epsilon_squared) {}
 
   /// Replaces r by w and returns true. If no direction is lost except by dependent rows, returns false, and r does not
-  /// change. columns: number of columns of L; the other columns are zero.
+  /// change. columns: rank of A Z; the further columns of L are zero.
   [[nodiscard]] bool operator()(const Matrix<M, M, Scalar>& L, Vector<M, Scalar>& r, Eigen::Index columns) noexcept {
     const Eigen::Index m = L.rows();
     const bool dependent = columns < m;

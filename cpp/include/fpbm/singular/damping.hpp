@@ -18,8 +18,8 @@ template <typename Scalar = double>
 class SingularDamping {
  public:
   /// radius: fraction of ‖J‖_F, in [0, 1], below which a singular value counts as lost; 0 switches damping off. brake:
-  /// null-space damping at a singular posture [1/s]. docs/singularities.md has the effect of both values, which
-  /// docs/figures/singularities.py prints. Throws std::invalid_argument if a value is out of range.
+  /// null-space damping at a singular posture [1/s]. docs/singularities.md describes the effect of both values;
+  /// docs/figures/singularities.py prints the numbers. Throws std::invalid_argument if a value is out of range.
   explicit SingularDamping(Scalar radius = Scalar(0.02), Scalar brake = Scalar(10)) : radius_(radius), brake_(brake) {
     validation::require_fraction("singular_radius", radius);
     validation::require_non_negative("singular_brake", brake);

@@ -19,7 +19,7 @@ namespace fpbm {
 /// With ρ = 0, the rows C⁻¹J are orthonormal, and the singular values of C⁻¹J Z are the cosines of the principal angles
 /// between the row space of J and the null space: 1 if the higher levels leave a direction free, 0 if the higher levels
 /// determine the direction, for any unit of the rows. With ρ > 0, a direction in which J has the singular value σ has
-/// at most the value σ/√(σ² + ρ²‖J‖²_F), so that singular postures lose directions too.
+/// at most the singular value σ/√(σ² + ρ²‖J‖²_F) of C⁻¹J Z, so that directions are also lost at singular postures.
 template <int M, int N, typename Scalar>
 struct ScaledLevel {
   Matrix<M, N, Scalar> J;
