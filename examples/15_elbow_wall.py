@@ -8,7 +8,7 @@ arm = fp.SerialArm.preset("panda")
 q0 = [0, -0.3, 0, -2.2, 0, 2, 0.785]  # [rad]
 stack = fp.Stack(fp.AxisTask(name="upright"), fp.PositionTask(name="place"), fp.PostureTask(q0, k1=4, k2=4))
 bounds = (
-    fp.TaskBounds(fp.PositionTask("panda_joint4", rows=("y",)), upper=0.04, acceleration=1),  # [m], [m/s^2]
+    fp.TaskBounds(fp.PositionTask("panda_joint4", rows=("y",)), upper=0.04, deceleration=1),  # [m], [m/s^2]
     fp.TaskBounds(fp.PositionTask(), velocity=0.5),  # [m/s]
 )
 tracker = fp.Tracker(arm, fp.Balanced(0.6, np.ones(7), null_damping=2), q0, stack=stack, bounds=bounds)  # 1 kHz

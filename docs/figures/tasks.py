@@ -25,7 +25,7 @@ def main(file: Path) -> None:
         fp.PositionTask(name="place"),
         fp.PostureTask(Q0, k1=4, k2=4),
     )
-    wall = fp.TaskBounds(fp.PositionTask("panda_joint4", rows=("y",), name="elbow"), upper=WALL, acceleration=1)
+    wall = fp.TaskBounds(fp.PositionTask("panda_joint4", rows=("y",), name="elbow"), upper=WALL, deceleration=1)
     path = fp.Line([0.05, 0.35, 0.1], 2.5).then(fp.Line([-0.05, -0.7, -0.1], 3.5))
     scheme = fp.Balanced(0.6, np.ones(7), null_damping=2)
     run = fp.track(arm, path, scheme, Q0, stack=stack, task="place", bounds=[wall], hold=1.5)

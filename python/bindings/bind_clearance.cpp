@@ -46,7 +46,7 @@ void add_bounds(Clearance<kDynamic>& clearance, const Model& model, const py::ob
     if (py::cast<std::string>(task.attr("kind")) == "axis") {
       const auto angle = [&](const char* key) { return py::cast<double>(each.attr(key)); };
       clearance.keep(AxisBounds<>{frame, vector(task, "axis"), vector(task, "x"), angle("least_angle"),
-                                  angle("largest_angle"), number("velocity"), number("acceleration"), name});
+                                  angle("largest_angle"), number("velocity"), number("deceleration"), name});
     } else {
       const auto selected = py::cast<std::array<bool, 3>>(each.attr("selected"));
       const auto limit = [&](const char* key) {
@@ -57,7 +57,7 @@ void add_bounds(Clearance<kDynamic>& clearance, const Model& model, const py::ob
         return values;
       };
       clearance.keep(PositionBounds<>{frame, limit("lower_corner"), limit("upper_corner"), number("velocity"),
-                                      number("acceleration"), selected, name});
+                                      number("deceleration"), selected, name});
     }
   }
 }

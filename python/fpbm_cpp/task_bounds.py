@@ -41,7 +41,7 @@ class TaskBounds(Data):
         infinite=True,
         unit="m/s, rad/s",
     )
-    acceleration: float = parameter(
+    deceleration: float = parameter(
         "Largest deceleration toward lower and upper; for an axis, of the cosine of the angle. Default: no bound.",
         POSITIVE,
         default=inf,

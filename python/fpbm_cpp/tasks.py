@@ -154,7 +154,7 @@ class CenterOfMassTask(Task):
 
 @data
 class AxisTask(FrameTask):
-    """Direction of an axis of a frame: 2 rows; the rotation about the axis is free. Its point has shape (3,)."""
+    """Direction of an axis of a frame: 2 rows; the rotation about the axis is free. The point of the task has shape (3,)."""
 
     kind = "axis"
     axis: ArrayField = parameter("Axis in the frame; its length is ignored.", default=(0, 0, 1), shape="(3,)")

@@ -271,7 +271,7 @@ TEST(TaskBounds, name_the_invalid_argument) {
   EXPECT_EQ(with(cone), "lower = 1: must be below upper");
   cone.upper = 2.0;
   cone.deceleration = 0.0;
-  EXPECT_EQ(with(cone), "acceleration = 0: must be positive, or infinite");
+  EXPECT_EQ(with(cone), "deceleration = 0: must be positive, or infinite");
 }
 
 }  // namespace

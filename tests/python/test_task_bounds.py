@@ -75,7 +75,7 @@ def test_walls_and_cones_hold(name, level, stacked):
 
 def test_a_run_keeps_its_bounds():
     arm, _, q0 = arm_of("panda")
-    bounds = (fp.TaskBounds(fp.PositionTask(rows=("z",)), lower=arm.forward(q0)[2, 3] - 0.1, acceleration=0.5),)
+    bounds = (fp.TaskBounds(fp.PositionTask(rows=("z",)), lower=arm.forward(q0)[2, 3] - 0.1, deceleration=0.5),)
     run = fp.track(arm, fp.Line([0, 0, -0.3], 2.0), SCHEMES["acceleration"](7, 1), q0, bounds=bounds, hold=4.0)
     z = np.array([arm.forward(q)[2, 3] for q in run.q])
     assert z.min() >= bounds[0].lower - 1e-9
@@ -98,7 +98,7 @@ def test_a_run_keeps_its_bounds():
         (lambda: fp.TaskBounds(fp.PositionTask(axes="frame"), 1), "task.axes = 'frame': must be 'base'"),
         (lambda: fp.TaskBounds(fp.PositionTask(reference_frame="base"), 1), "task.reference_frame: must be None"),
         (lambda: fp.TaskBounds(fp.PositionTask(), velocity=0), "velocity = 0: must be positive"),
-        (lambda: fp.TaskBounds(fp.PositionTask(), 1, acceleration=-1), "acceleration = -1: must be positive"),
+        (lambda: fp.TaskBounds(fp.PositionTask(), 1, deceleration=-1), "deceleration = -1: must be positive"),
         (
             lambda: tracker(fp.TaskBounds(fp.PositionTask("hand"), 1)),
             "frame = 'hand': must be a frame, or the joint of a link: 'base', 'tip'",

@@ -122,7 +122,7 @@ class Clearance {
   /// the margin of shapes does not apply to the bound. deceleration: largest deceleration toward the bound [m/s²], or
   /// [1/s²] of a direction.
   void add_lower_bound(Body body, const Vector3& n, Scalar offset, Scalar deceleration) {
-    if (!(deceleration > Scalar(0))) validation::fail("acceleration", deceleration, "positive, or infinite");
+    if (!(deceleration > Scalar(0))) validation::fail("deceleration", deceleration, "positive, or infinite");
     body.deceleration = deceleration;
     pairs_.push_back({bodies_.size(), obstacles_.size(), true, robot_.moved_by(body.link), 0});
     obstacles_.push_back({body.name, HalfSpace<Scalar>{n, offset}});

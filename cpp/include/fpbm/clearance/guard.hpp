@@ -40,7 +40,7 @@ class Guard {
   /// Starts from a state after a tick with the acceleration `last`. Throws std::invalid_argument with the names of the
   /// pair if a pair is closer than the margin, or if the arm cannot stop with all margins kept.
   void require_clear(const JointLimits& limits, const JointState& start, const JointVector& last) {
-    validation::require_size("clearance's joints", clearance_.robot().dof(), start.q.size());
+    validation::require_size("joints of the clearance", clearance_.robot().dof(), start.q.size());
     acting_ticks_ = plan_.acting_ticks(limits);
     if (empty()) return;
     near_pairs_.set_posture(clearance_, start.q);

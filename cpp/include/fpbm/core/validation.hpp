@@ -146,11 +146,10 @@ void require_joint_vector(const Argument& argument, const Eigen::MatrixBase<Deri
   require_finite(argument, values);
 }
 
-/// Number of joints: requires at least one joint per task row, and at most kMaxDof.
-inline void require_dof(const Argument& argument, Eigen::Index dof, int task_rows) {
-  if (dof < task_rows || dof > kMaxDof) {
-    reject_value(argument, dof, " has ", dof, " entries: must have ", task_rows, " to ", kMaxDof,
-                 ", one per joint, and at least one per task row");
+/// Number of joints: requires at least `least`, and at most kMaxDof.
+inline void require_dof(const Argument& argument, Eigen::Index dof, int least) {
+  if (dof < least || dof > kMaxDof) {
+    reject_value(argument, dof, " has ", dof, " entries: must have ", least, " to ", kMaxDof, ", one per joint");
   }
 }
 

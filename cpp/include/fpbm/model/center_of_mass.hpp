@@ -19,9 +19,9 @@ void require_mass(const Robot& robot) {
 /// Computes the centre of mass of a robot, base included [m], and the velocity [m/s], J and J̇ of the centre of mass,
 /// along the axes of the base frame.
 ///
-/// The links have masses mᵢ at cᵢ, and m = Σ mᵢ. Joint j moves links of the total mass m_j and the mass moment
-/// s_j = Σ mᵢ cᵢ. Column j of J is z × (s_j − m_j p_j)/m for a revolute joint with the axis z through p_j, and z m_j/m
-/// for a prismatic joint along z. J̇ is the derivative of J, with ż = w × z and the angular velocity w of link j + 1
+/// The links have masses m_k at c_k, and m = Σ m_k. Joint i moves links of the total mass M_i and the mass moment
+/// s_i = Σ m_k c_k. Column i of J is z × (s_i − M_i p_i)/m for a revolute joint with the axis z through p_i, and z M_i/m
+/// for a prismatic joint along z. J̇ is the derivative of J, with ż = w × z and the angular velocity w of link i + 1
 /// (docs/equations.md, Time derivative of J).
 template <int N, typename Scalar, int Joints>
 void center_of_mass(const Robot<N, Scalar, Joints>& robot, const RobotState<N, Scalar, Joints>& state,

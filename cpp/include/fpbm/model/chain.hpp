@@ -103,9 +103,9 @@ void require_joint(const validation::Argument& name, const Joint<Scalar, Name>& 
 
 /// Checks a chain and returns its number of joints.
 ///
-/// Throws std::invalid_argument if the number of joints exceeds kMaxDof, an axis is zero, a number is not finite, R of
-/// a placement is not a rotation, or the bounds leave no range for a joint. The message has the name of the joint, if
-/// any.
+/// Throws std::invalid_argument if the number of joints is 0 or exceeds kMaxDof, an axis is zero, a number is not
+/// finite, R of a placement or of the tip is not a rotation, a velocity, acceleration, jerk or deceleration is not
+/// positive, or lower and upper leave no range for a joint. The message has the name of the joint, if any.
 template <typename Scalar, int Length>
 Eigen::Index require_joints(const Chain<Scalar, Length>& chain) {
   const auto dof = static_cast<Eigen::Index>(chain.joints.size());

@@ -30,8 +30,8 @@ class SerialArm {
   using Scalar = Scalar_;
   static constexpr int kDof = N;
 
-  /// Throws std::invalid_argument if the number of joints is not N or exceeds kMaxDof, an axis is zero, a number is not
-  /// finite, R of a placement is not a rotation, or a lower bound is not below the upper bound.
+  /// Throws std::invalid_argument if the number of joints is not N, a joint follows another joint, or require_joints()
+  /// rejects the chain.
   template <int Length = Eigen::Dynamic>
   explicit SerialArm(const Chain<Scalar, Length>& chain)
       : pass_(require_chain(chain, N)), limits_(JointLimits<N, Scalar>::none(pass_.dof())) {

@@ -36,7 +36,10 @@ class TrackerBatch {
   /// tip at the start of the path. Throws std::invalid_argument if the number of trackers is not the number of lanes.
   TrackerBatch(const Arm& arm, Space, const Scheme& scheme, std::vector<Tracker> trackers)
       : arm_(arm), scheme_(scheme), trackers_(std::move(trackers)) {
-    validation::require_size("trackers", static_cast<Eigen::Index>(trackers_.size()), kLanes);
+    if (trackers_.size() != kLanes) {
+      validation::reject_value("trackers", trackers_.size(), " has ", trackers_.size(), " entries: must have ", kLanes,
+                               ", one per lane");
+    }
     for (std::size_t lane = 0; lane < kLanes; ++lane) set_lane(start_, lane, trackers_[lane].tip());
     status_.fill(Status::kOk);
   }

@@ -5,7 +5,7 @@
 
 namespace fpbm {
 
-/// Nearly lost task directions of an arm, and the damping Δ in these directions (docs/singularities.md, The law).
+/// Nearly lost task directions of an arm, and the damping Δ in these directions (docs/singularities.md, Damping law).
 ///
 /// For G = JJᵀ with eigenvalues σᵢ² and eigenvectors uᵢ,
 ///
