@@ -30,7 +30,7 @@ class Robot(NamedTuple):
     name: str
     arm: fp.SerialArm
     limits: fp.JointLimits
-    clearance: fp.Clearance  # Clearance of the arm by itself.
+    clearance: fp.Clearance  # Self-collision only.
     meshes: Meshes
 
 

@@ -171,9 +171,9 @@ def over_median(results: Results) -> list[str]:
         job, empty = row["p99.9"] / row["p50"], row["empty_p99.9"] / row["empty_p50"]
         return [row["name"], f"{job:.2f}", f"{empty:.2f}", f"{job / empty:.2f}"]
 
-    where = "an isolated core" if results.values.get("isolated") else "a shared core, so no bar applies"
+    where = "an isolated core" if results.values.get("isolated") else "a shared core, so no bound is promised"
     return [
-        f"p99.9 over p50 in warm caches. On an isolated core the bar is 1.5; this run was on {where}.",
+        f"p99.9 over p50 in warm caches. The promised bound on an isolated core is 1.5. This run was on {where}.",
         "",
         *table(
             ["job", "job", "an empty call as long", "of the two"],
@@ -207,9 +207,7 @@ def growth(results: Results) -> list[str]:
             # At n = 7, a pose leaves one self-motion, which may have separate code: the line excludes this time.
             slope, offset = line([(n, time) for n, time in points if "spatial" not in name or n > 7])
             off = [time / (slope * n + offset) - 1 for n, time in points]
-            text.append(
-                f"- {words}: {slope:.1f} ns a joint and {offset:.0f} ns, at most {max(map(abs, off)):.0%} off it"
-            )
+            text.append(f"- {words}: {slope:.1f} ns per joint and {offset:.0f} ns, within {max(map(abs, off)):.0%}")
             columns += [[nanoseconds(time) for _, time in points], [f"{each:+.0%}" for each in off]]
         heads = [head for words in kinds.values() for head in (words, "off the line")]
         sizes = [str(n) for n, _ in points]
@@ -266,8 +264,8 @@ def limited(results: Results) -> list[str]:
         "The limits alone: the difference to the same step without them.",
         "",
         *comparison(results, "limits", LIMITED, kind="bounds"),
-        "Answers to 10,000 problems, beside this library's, which answers all of them. With bounds on jerk, line and s",
-        "are those of the second problem. The last column counts problems without a solution if the whole task",
+        "Results for 10,000 problems, compared with this library, which solves all problems. With bounds on jerk, line",
+        "and s are those of the second problem. The last column counts problems without a solution if the whole task",
         "is an equality.",
         "",
         *table(["arm, task, bounds: library", *columns.values()], scores),
@@ -293,7 +291,7 @@ def page(results: Results) -> str:
     values = results.values
     lines = ["# Benchmark results", ""]
     if values["quick"]:
-        lines += ["By a quick run: figures are rough.", ""]
+        lines += ["From a quick run: the numbers are inaccurate.", ""]
     lines += ["Definitions, and limits of the measurements: [bench/README.md](../README.md).", "", *summary(results)]
     lines += [
         "![Steps of each library, tails, growth with n, sweeps](results.png)",
@@ -307,22 +305,22 @@ def page(results: Results) -> str:
     if values.get("limited"):
         lines += ["## Limited steps", "", *limited(results)]
     if values.get("lanes"):
-        lines += ["## Steps in lanes", "", "Time an arm, of several side by side.", "", *in_lanes(results)]
+        lines += ["## Steps in lanes", "", "Time per arm, for several arms in SIMD lanes.", "", *in_lanes(results)]
     if "python" in values:
         lines += ["## Steps from Python", "", *comparison(results, "python", PYTHON)]
     lines += [
         "## Tails",
         "",
-        "Each call waited for; with the timer's own time, which row `timer` is.",
+        "Times until the result of a call is available. They include the time of the timer (row `timer`).",
         "",
         *tails(results),
         *over_median(results),
     ]
     if "instructions" in values:
-        lines += ["## Instructions a call", "", *instructions(values["instructions"], values.get("paths", {}))]
+        lines += ["## Instructions per call", "", *instructions(values["instructions"], values.get("paths", {}))]
     if "stalls" in values:
         counts = ([name, f"{stalls:.0f}"] for name, stalls in values["stalls"].items())
-        lines += ["## Loads that wait for stores, a call", "", *table(["job", "loads"], counts)]
+        lines += ["## Loads that wait for stores, per call", "", *table(["job", "loads"], counts)]
     if "circle" in values:
         rows = (
             [
@@ -347,7 +345,7 @@ def page(results: Results) -> str:
     lines += [
         "## Growth with the number of joints",
         "",
-        "FPBM on planar arms (positions) and spatial ones (poses). Work grows as n in either: a line.",
+        "FPBM on planar arms (positions) and spatial arms (poses). The number of operations is linear in n.",
         "",
         *growth(results),
     ]
