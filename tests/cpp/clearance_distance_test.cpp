@@ -152,7 +152,7 @@ class Distances : public ::testing::Test {
   }
 
   /// The signed distance of convex shapes is the largest gap over all directions. If the distance of two points, one of
-  /// each shape, equals the gap along the normal, both are optimal.
+  /// each shape, equals the gap along the normal, the points and the normal are optimal.
   template <typename Second>
   void expect_widest_gap(const Nearest<Scalar>& found, const Capsule<Scalar>& first, const Second& second,
                          const std::string& where) {

@@ -43,7 +43,7 @@ std::vector<Place> places() {
   return all;
 }
 
-/// The places whose round-off error is small enough for second differences.
+/// The places of subjects in double: for second differences, the round-off error of float is too large.
 std::vector<Place> places_in_double() {
   std::vector<Place> all = places();
   all.erase(std::remove_if(all.begin(), all.end(), [](const Place& each) { return each.subject.epsilon > 1e-10; }),

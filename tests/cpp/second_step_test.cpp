@@ -157,8 +157,8 @@ void check_motions(const std::string& name, const Chain<>& chain, double jerk_pe
           return largest_scale(J, step.box.lower - wider, step.box.upper + wider, step.from, step.goal, {}, {});
         };
         double best = optimum(kSlack);
-        // The optimum is concave in the slack. Therefore this value is at least the optimum without slack, without the
-        // part of an ill-conditioned optimum that is proportional to the slack.
+        // Extrapolates the optimum linearly to zero slack. Since the optimum is concave in the slack, the result is at
+        // least the optimum without slack.
         if (motion.scale / step.first < best - 1e-6) best = 2.0 * optimum(kSlack / 2.0) - best;
         tally.add(motion.scale / step.first, best);
       }
