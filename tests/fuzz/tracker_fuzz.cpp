@@ -1,6 +1,6 @@
 // Makes states, references, options and limits of arbitrary bytes, and checks the promises of the tracker and the
 // schemes: no crash, no NaN or infinity in a result, no bound violated from a viable start, the same bits for the same
-// input, and a good tick again as soon as the reference is good again.
+// input, and a tick without an error as soon as the reference is valid again.
 
 #include <cmath>
 #include <cstdio>
@@ -321,7 +321,7 @@ void run_any_scheme(Bytes& bytes, const Arm& arm, Space space) {
     w(i) = bytes.mostly(bytes.spread(0.1, 10.0));
     wild = wild || !(w(i) >= 0.1 && w(i) <= 10.0);
   }
-  // Equal weights make MVN of WMVN and, with alpha = 0, MAN of Balanced.
+  // With equal weights, WMVN is MVN and, with alpha = 0, Balanced is MAN.
   if ((which & 4) != 0) w.setOnes();
   // Drawn one by one: C++ does not say in which order a call's arguments are evaluated.
   const double alpha = (which & 8) != 0 ? 0.0 : bytes.mostly(bytes.fraction());
