@@ -136,7 +136,7 @@ auto inputs(const Arm& arm, const fpbm::Vector<N>& bent, double scatter, Wanted 
     for (double& value : vector) value = reach * uniform(generator);
     return vector;
   };
-  const fpbm::Vector<Space::kRows> way = fpbm::Vector<Space::kRows>::Zero();
+  const fpbm::Vector<Space::kRows> zero = fpbm::Vector<Space::kRows>::Zero();
   std::array<Input<Space, N>, 64> result;
   for (auto& [state, reference] : result) {
     fpbm::Kinematics<Space, N> kinematics;
@@ -144,9 +144,9 @@ auto inputs(const Arm& arm, const fpbm::Vector<N>& bent, double scatter, Wanted 
       state = {bent + fill(bent, scatter), fill(bent, 1.0)};
       arm.kinematics(state.q, kinematics);
     } while (!wanted(kinematics));
-    reference.x = Space::template displace<double>(kinematics.tip, fill(way, 0.01));
-    reference.xd = fill(way, 0.5);
-    reference.xdd = fill(way, 0.5);
+    reference.x = Space::template displace<double>(kinematics.tip, fill(zero, 0.01));
+    reference.xd = fill(zero, 0.5);
+    reference.xdd = fill(zero, 0.5);
   }
   return result;
 }
