@@ -568,8 +568,8 @@ double speed_at_the_edge(double brake, std::uint32_t seed) {
   x.col(0) = random.uniform(4, 0.2, 1.2);
   arm.kinematics(Vector<4>(x.col(0)), loop.kinematics);
   const double direction = random.uniform(-kPi, kPi);
-  const Vector<2> way = 4.1 * Vector<2>(std::cos(direction), std::sin(direction)) - loop.kinematics.tip;
-  const Path<Line<2>> path(Line<2>(way), 5.0);
+  const Vector<2> displacement = 4.1 * Vector<2>(std::cos(direction), std::sin(direction)) - loop.kinematics.tip;
+  const Path<Line<2>> path(Line<2>(displacement), 5.0);
   AnchoredPath<Path<Line<2>>> references(path, loop.kinematics.tip);
   const auto derivative = [&](double t, const Matrix<4, 2>& at, Matrix<4, 2>& rate) noexcept {
     return loop.evaluate(t < 5.0 ? references.motion(t, t) : references.hold(), at, rate);

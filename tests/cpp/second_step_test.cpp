@@ -65,9 +65,9 @@ struct Law {
   /// The motion nearest to a null-space motion with J u = task.
   [[nodiscard]] Eigen::VectorXd motion(const Eigen::MatrixXd& J, const Eigen::VectorXd& task,
                                        const Eigen::VectorXd& near) const {
-    const Eigen::MatrixXd way = inverse_weights.asDiagonal() * J.transpose();
-    const Eigen::MatrixXd gram = J * way + 4e-4 * Eigen::MatrixXd::Identity(J.rows(), J.rows());
-    return near + way * gram.llt().solve(task - J * near);
+    const Eigen::MatrixXd weighted_transpose = inverse_weights.asDiagonal() * J.transpose();
+    const Eigen::MatrixXd gram = J * weighted_transpose + 4e-4 * Eigen::MatrixXd::Identity(J.rows(), J.rows());
+    return near + weighted_transpose * gram.llt().solve(task - J * near);
   }
 };
 
