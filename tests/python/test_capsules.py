@@ -439,10 +439,10 @@ def samples(shape: object, rng: np.random.Generator) -> Array:
     kind = type(shape).__name__
     if kind.startswith("BVH"):
         vertices = shape.vertices()
-        ways = rng.dirichlet([1, 1, 1], 3000)
+        weights = rng.dirichlet([1, 1, 1], 3000)
         faces = [shape.tri_indices(int(i)) for i in rng.integers(0, shape.num_tris, 3000)]
         corner = np.array([[vertices[face[k]] for k in range(3)] for face in faces])
-        return np.vstack([vertices, np.einsum("ij,ijk->ik", ways, corner)])
+        return np.vstack([vertices, np.einsum("ij,ijk->ik", weights, corner)])
     directions = rng.normal(size=(500, 3))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     if kind == "Box":
