@@ -55,7 +55,7 @@ def test_a_target_moves_its_own_task():
     np.testing.assert_allclose(loop.tip["elbow"][2], higher[2], atol=1e-4)
     assert largest(ticks[-5000:], "place") < 1e-4
     tilted = fp.rotation([0.2, -0.1, 0.0]) @ start["upright"]
-    loop.push(3 * tilted, "upright")  # Its length does not matter.
+    loop.push(3 * tilted, "upright")  # The length of the axis does not matter.
     ticks += play(loop, clock, 6)
     np.testing.assert_allclose(loop.tip["upright"], tilted, atol=1e-5)
     np.testing.assert_allclose(loop.tip["place"], goal, atol=1e-4)
