@@ -44,7 +44,7 @@ struct Iiwa14 : Preset<fpbm::presets::iiwa14> {
   static std::string name() { return "iiwa14"; }
 };
 
-/// An arm with a task. If a Scalar has several lanes, as many arms in lanes.
+/// An arm with a task. If Scalar has several lanes, one arm in each lane.
 template <typename Robot_, typename Space_, typename Scalar_ = double>
 struct Case {
   using Robot = Robot_;
@@ -126,8 +126,8 @@ struct Input {
 };
 
 /// Random states around a bent posture, within ±scatter [rad], that satisfy `wanted`, and references near the tip. The
-/// states are the same in every run. They fit into the first-level cache, and are too many for hoisting computations
-/// out of the loop.
+/// states are the same in every run. The states fit into the first-level cache, and are so many that the compiler
+/// cannot hoist computations out of the loop.
 template <typename Space, typename Arm, typename Wanted, int N = Arm::kDof>
 auto inputs(const Arm& arm, const fpbm::Vector<N>& bent, double scatter, Wanted wanted) {
   std::mt19937 generator(1);
@@ -136,7 +136,7 @@ auto inputs(const Arm& arm, const fpbm::Vector<N>& bent, double scatter, Wanted 
     for (double& value : vector) value = reach * uniform(generator);
     return vector;
   };
-  const fpbm::Vector<Space::kRows> way = fpbm::Vector<Space::kRows>::Zero();
+  const fpbm::Vector<Space::kRows> zero = fpbm::Vector<Space::kRows>::Zero();
   std::array<Input<Space, N>, 64> result;
   for (auto& [state, reference] : result) {
     fpbm::Kinematics<Space, N> kinematics;
@@ -144,9 +144,9 @@ auto inputs(const Arm& arm, const fpbm::Vector<N>& bent, double scatter, Wanted 
       state = {bent + fill(bent, scatter), fill(bent, 1.0)};
       arm.kinematics(state.q, kinematics);
     } while (!wanted(kinematics));
-    reference.x = Space::template displace<double>(kinematics.tip, fill(way, 0.01));
-    reference.xd = fill(way, 0.5);
-    reference.xdd = fill(way, 0.5);
+    reference.x = Space::template displace<double>(kinematics.tip, fill(zero, 0.01));
+    reference.xd = fill(zero, 0.5);
+    reference.xdd = fill(zero, 0.5);
   }
   return result;
 }

@@ -62,8 +62,8 @@ def scenarios() -> list[Scenario]:
     down, aside, into, along = [0.15, 0.0, -0.45], [0.0, -0.15, 0.0], [0.13, 0.0, 0.0], [0.0, 0.35, 0.0]
     behind = [-0.75, 0.05, -0.25]
 
-    def line(way: list[float], duration: float, back: bool = False) -> fp.Path:
-        return fp.Line(-np.array(way) if back else way, duration, time_law="quintic")
+    def line(displacement: list[float], duration: float, back: bool = False) -> fp.Path:
+        return fp.Line(-np.array(displacement) if back else displacement, duration, time_law="quintic")
 
     return [
         Scenario(

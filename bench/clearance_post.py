@@ -68,7 +68,7 @@ def model_of(name: str, capsule_radius: float) -> Any:
         return spec.compile()
 
 
-def ways(number: int) -> tuple[Array, Array]:
+def post_path(number: int) -> tuple[Array, Array]:
     """A random path of a post through the arm: the point nearest to the first axis, and the direction of the path."""
     arm = MADE["robot"].arm
     rng = np.random.default_rng([23, number])
@@ -87,7 +87,7 @@ def crossing(task: tuple[float, int, bool]) -> Crossing:
 
     speed, number, guarded = task
     made: Robot = MADE["robot"]
-    nearest, direction = ways(number)
+    nearest, direction = post_path(number)
     foot = nearest - FAR * direction
 
     def post(at: Array) -> fp.Capsule:

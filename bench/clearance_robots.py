@@ -30,7 +30,7 @@ class Robot(NamedTuple):
     name: str
     arm: fp.SerialArm
     limits: fp.JointLimits
-    clearance: fp.Clearance  # Clearance of the arm by itself.
+    clearance: fp.Clearance  # Self-collision only.
     meshes: Meshes
 
 
@@ -143,9 +143,9 @@ def coal_shape(obstacle: Obstacle) -> tuple[Any, Array]:
 
 def capsule_frame(capsule: fp.Capsule) -> tuple[Array, float]:
     """The frame at the middle of a capsule with z along its segment, and the length of the segment."""
-    way = capsule.b - capsule.a
-    length = float(np.linalg.norm(way))
-    z = way / length if length > 0 else np.array([0.0, 0.0, 1.0])
+    segment = capsule.b - capsule.a
+    length = float(np.linalg.norm(segment))
+    z = segment / length if length > 0 else np.array([0.0, 0.0, 1.0])
     x = np.cross(np.eye(3)[np.argmin(np.abs(z))], z)
     x /= np.linalg.norm(x)
     frame = np.eye(4)

@@ -90,7 +90,7 @@ def main() -> None:
     elif compiler not in record:
         print(f"No instruction counts are recorded for {compiler}, only for {', '.join(record) or 'none'}: not checked")
     elif lines := grown(counts, record[compiler]):
-        sys.exit("\n".join([*lines, "If that is meant: make count RECORD=1"]))
+        sys.exit("\n".join([*lines, "If the change is intended: make count RECORD=1"]))
     else:
         changes = [counts[job] / record[compiler][job] - 1 for job in counts]
         least, most = min(changes), max(changes)

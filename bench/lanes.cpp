@@ -56,7 +56,7 @@ void require_agreement_in_lanes(const std::string& row) {
       solved = alone.resolve(each[i], expected) == fpbm::Status::kOk && solved;
       const auto difference = found.unaryExpr([lane](const InLanes& x) -> double { return x[lane]; }) - expected;
       if (!solved || !(difference.norm() <= 1e-12 * expected.norm())) {
-        std::fprintf(stderr, "%s answers otherwise, by %g\n", row.c_str(), difference.norm() / expected.norm());
+        std::fprintf(stderr, "%s: the result differs by %g\n", row.c_str(), difference.norm() / expected.norm());
         std::exit(EXIT_FAILURE);
       }
     }

@@ -107,7 +107,7 @@ std::vector<Asked<Case>> asked(std::size_t count) {
     for (double& value : vector) value = reach * uniform(generator);
     return vector;
   };
-  const fpbm::Vector<Case::kRows> way = fpbm::Vector<Case::kRows>::Zero();
+  const fpbm::Vector<Case::kRows> zero = fpbm::Vector<Case::kRows>::Zero();
   std::vector<Asked<Case>> result;
   while (result.size() < count) {
     Asked<Case> one;
@@ -123,9 +123,9 @@ std::vector<Asked<Case>> asked(std::size_t count) {
     }
     fpbm::Kinematics<typename Case::Space, N> kinematics;
     Case::Robot::arm().kinematics(one.state.q, kinematics);
-    one.reference.x = Case::Space::template displace<double>(kinematics.tip, fill(way, 0.1));
-    one.reference.xd = fill(way, 0.5);
-    one.reference.xdd = fill(way, 0.5);
+    one.reference.x = Case::Space::template displace<double>(kinematics.tip, fill(zero, 0.1));
+    one.reference.xd = fill(zero, 0.5);
+    one.reference.xdd = fill(zero, 0.5);
     ours.move(one);
     if (!limits.box(one.state, one.last).contains(ours.desired())) result.push_back(one);
   }

@@ -96,7 +96,7 @@ void require_agreement() {
     const fpbm::Vector<Case::kRows> expected = ours.J() * ours.desired();
     const double difference = (ours.J() * answer.u - expected).norm() / expected.norm();
     if (!solved || !(difference <= 1e-3)) {
-      std::fprintf(stderr, "TSID answers otherwise, by %g\n", difference);
+      std::fprintf(stderr, "the result of TSID differs by %g\n", difference);
       std::exit(EXIT_FAILURE);
     }
   }

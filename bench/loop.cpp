@@ -40,15 +40,15 @@ std::vector<Input> inputs(double far) {
   bent << 0.0, -0.3, 0.0, -1.8, 0.0, 1.6, 0.8;
   std::vector<Input> result(64);
   for (Input& input : result) {
-    fpbm::Vector<6> way;
+    fpbm::Vector<6> displacement;
     for (int i = 0; i < 7; ++i) {
       input.state.q(i) = bent(i) + 0.2 * uniform(generator);
       input.state.qd(i) = 0.1 * uniform(generator);
     }
-    for (int i = 0; i < 6; ++i) way(i) = far * uniform(generator);
+    for (int i = 0; i < 6; ++i) displacement(i) = far * uniform(generator);
     fpbm::Kinematics<Pose, 7> kinematics;
     panda().kinematics(input.state.q, input.state.qd, kinematics);
-    input.reference = fpbm::Reference<Pose>::hold(Pose::displace<double>(kinematics.tip, way));
+    input.reference = fpbm::Reference<Pose>::hold(Pose::displace<double>(kinematics.tip, displacement));
   }
   return result;
 }

@@ -1,4 +1,5 @@
-// For forwardKinematics() with accelerations. Boost's default is too low if its header is included first.
+// For forwardKinematics() with accelerations. If a header of Boost is included before this line, the default of Boost,
+// which is too low, applies.
 #define BOOST_FUSION_INVOKE_MAX_ARITY 10
 
 #include "pinocchio_tree.hpp"

@@ -267,9 +267,9 @@ def limited(results: Results) -> list[str]:
         "Times of the limits alone: the differences between the times with limits and the times without limits.",
         "",
         *comparison(results, "limits", LIMITED, kind="bounds"),
-        "Answers of the peers to 10,000 problems, compared with the answers of this library, which answers all.",
-        "With bounds on jerk, the task line and s are those of the second problem. The last column counts problems",
-        "that have no solution if the whole task is an equality.",
+        "Results for 10,000 problems, compared with this library, which solves all problems. With bounds on jerk, line",
+        "and s are those of the second problem. The last column counts problems without a solution if the whole task",
+        "is an equality.",
         "",
         *table(["arm, task, bounds: library", *columns.values()], scores),
     ]
@@ -294,7 +294,7 @@ def page(results: Results) -> str:
     values = results.values
     lines = ["# Benchmark results", ""]
     if values["quick"]:
-        lines += ["By a quick run: figures are rough.", ""]
+        lines += ["From a quick run: the numbers are inaccurate.", ""]
     lines += ["Definitions, and limits of the measurements: [bench/README.md](../README.md).", "", *summary(results)]
     lines += [
         "![Steps of each library, tails, growth with n, sweeps](results.png)",

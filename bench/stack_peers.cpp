@@ -89,8 +89,8 @@ void run(int rounds, int passes, bool last) {
                 cascade.name().c_str(), found.kinematics, found.first, found.second);
     first = false;
     if (!(found.kinematics < 1e-9 && found.first < 1e-4)) {
-      std::fprintf(stderr, "%s answers otherwise: kinematics by %g, level 0 by %g\n", cascade.name().c_str(),
-                   found.kinematics, found.first);
+      std::fprintf(stderr, "%s: the kinematics differ by %g, level 0 by %g\n", cascade.name().c_str(), found.kinematics,
+                   found.first);
       std::exit(EXIT_FAILURE);
     }
   });

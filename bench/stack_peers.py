@@ -124,7 +124,7 @@ def cpp_section(found: dict[str, Any]) -> Iterator[str]:
         for states in ("free", "limited"):
             row = fastest(result[states][1:])
             name = f"{stack}, {states}: the fastest cascade ({row['name']})"
-            yield f"- {name} takes {row['ratio']:.2f} times this library's step."
+            yield f"- {name} needs {row['ratio']:.2f} times the time of this library."
     yield ""
     for stack, result in found.items():
         yield f"### {STACKS[stack]}"
@@ -135,7 +135,7 @@ def cpp_section(found: dict[str, Any]) -> Iterator[str]:
         yield "The motion of 20 s:"
         yield from table(MOTIONS, motion_rows(result["motions"]))
         yield (
-            "Largest relative difference from the level 0 motion of this library, without active bounds: "
+            "Largest relative difference from the motion of level 0 by this library, without active bounds: "
             + "; ".join(f"{each['name']} {each['first']:.0e}" for each in result["differences"])
             + f". Kinematics: {max(each['kinematics'] for each in result['differences']):.0e}."
         )

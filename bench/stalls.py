@@ -132,7 +132,7 @@ def main() -> None:
     elif not known:
         print(f"None are recorded for {compiler}, only for {', '.join(record) or 'no compiler'}: not checked")
     elif more := [job for job in counts if counts[job] > known.get(job, 0.0)]:
-        sys.exit(f"More than recorded: {', '.join(more)}. If that is meant: python bench/stalls.py … --record")
+        sys.exit(f"More than recorded: {', '.join(more)}. If the change is intended: python bench/stalls.py … --record")
 
 
 if __name__ == "__main__":

@@ -34,7 +34,7 @@ void require_agreement(const std::string& row) {
         ours.resolve(input, expected) == fpbm::Status::kOk && solver.resolve(input, found) == fpbm::Status::kOk;
     const double difference = (found - expected).norm() / expected.norm();
     if (!solved || !(difference <= 1e-9)) {
-      std::fprintf(stderr, "%s answers otherwise, by %g\n", row.c_str(), difference);
+      std::fprintf(stderr, "%s: the result differs by %g\n", row.c_str(), difference);
       std::exit(EXIT_FAILURE);
     }
   }

@@ -108,7 +108,7 @@ def table(runs: list[dict[str, Any]]) -> list[dict[str, Any]]:
         expected = best.setdefault((run["name"], "none", 1), run)["answers"]
         common = min(len(expected), len(run["answers"]))
         if not np.allclose(run["answers"][:common], expected[:common], rtol=TOLERANCE, atol=0.0):
-            raise SystemExit(f"{run['name']}: lanes {run['lanes']} answer otherwise")
+            raise SystemExit(f"{run['name']}: results in lanes {run['lanes']} differ from results without lanes")
         best[key] = min(best.get(key, run), run, key=lambda run: float(run["seconds"]))
     rows: list[dict[str, Any]] = []
     for (name, kind, workers), run in sorted(best.items(), key=lambda item: list(CASES).index(item[0][0])):
@@ -122,7 +122,7 @@ def table(runs: list[dict[str, Any]]) -> list[dict[str, Any]]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--out", type=Path, help="also write the rates to this JSON file")
-    parser.add_argument("--motions", type=int, default=10_000, help="along the paper's circle; the Panda's are fewer")
+    parser.add_argument("--motions", type=int, default=10_000, help="on the paper's circle; the Panda has fewer")
     parser.add_argument("--measure", action="store_true", help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.measure:
@@ -139,7 +139,7 @@ def main() -> None:
         where = f"{row['name']:20}{row['lanes']:>8}{row['workers']:9}{row['motions']:9}"
         print(f"{where}{row['per_second'] / 1e6:12.2f} M{row['ratio']:8.2f}")
     best = max(row["ratio"] for row in rows if row["name"] == PAPER)
-    print(f"the paper's circle, best over one thread without lanes: {best:.1f} (required: 10)")
+    print(f"the paper's circle, largest ratio to one thread without lanes: {best:.1f} (required: 10)")
     if options.out:
         options.out.write_text(json.dumps(rows, indent=1))
 

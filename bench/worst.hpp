@@ -97,7 +97,9 @@ class WorstMotion {
   using Tracker = decltype(Case::tracker(fpbm::Vector<Case::kDof>()));
 
   static fpbm::Vector<Case::kDof> start_of(const Numbers& numbers) {
-    if (numbers.size() != kNumbers) throw std::invalid_argument(Case::name() + ": a motion of another length");
+    if (numbers.size() != kNumbers) {
+      throw std::invalid_argument(Case::name() + ": the motion must have " + std::to_string(kNumbers) + " numbers");
+    }
     return Case::start(numbers);
   }
 

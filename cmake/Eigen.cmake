@@ -1,4 +1,4 @@
-# Eigen 3.4: the system's where there is one, else the headers that the Python package cmeel-eigen carries.
+# Finds Eigen 3.4 in the system, or else in the Python package cmeel-eigen.
 find_package(Eigen3 3.4 QUIET NO_MODULE)
 if(NOT Eigen3_FOUND)
   find_package(Python QUIET COMPONENTS Interpreter)

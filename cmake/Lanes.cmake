@@ -1,5 +1,5 @@
-# Whether code in a processor's lanes can be compiled (FPBM_HAS_SIMD), and for x86-64 (FPBM_HAS_LANES), with which options
-# for each kind of those processors. Some standard libraries have the header and little in it, so a program tries the
+# Whether code in SIMD lanes can be compiled (FPBM_HAS_SIMD), also for all kinds of x86-64 processors (FPBM_HAS_LANES),
+# and the options for each kind. Some standard libraries have an incomplete header. Therefore, a program tries the
 # functions that the lanes need.
 include(CheckCXXCompilerFlag)
 include(CheckCXXSourceCompiles)
@@ -19,15 +19,15 @@ endif()
 set(lane_options -fno-math-errno)
 set(avx2_options -mavx2 -mfma)
 set(avx512_options ${avx2_options} -mavx512f -mavx512dq -mavx512vl -mavx512bw -mprefer-vector-width=512)
-# By default g++ copies structs of AVX2 vectors in parts of 16 bytes, and a load of a whole vector waits for its two stores.
-# For AVX-512 the preferred width is the default.
+# By default, g++ copies structs of AVX2 vectors in parts of 16 bytes. A load of a whole vector then waits for two
+# stores. For AVX-512 the preferred width is the default.
 check_cxx_compiler_flag("-mmove-max=256 -mstore-max=256" FPBM_HAS_MOVE_MAX)
 if(FPBM_HAS_MOVE_MAX)
   list(APPEND avx2_options -mmove-max=256 -mstore-max=256)
 endif()
 
-# Sets a variable to the kinds that a choice names: native (the kind of this machine's processor, by the macros that the
-# compiler defines for it; all kinds in a cross build, which cannot know), all, or a list of kinds.
+# Sets a variable to the kinds in a choice: native, all, or a list of kinds. native is the kind of this machine's
+# processor, by the macros of the compiler; in a cross build, where the processor is unknown, native is all.
 function(fpbm_lane_kinds choice result)
   set(all)
   if(FPBM_HAS_LANES)

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Writes into the recipes who publishes the release, and the checksums of its archive.
+# Writes the owner of the release and the checksums of its archive into the recipes.
 # usage: fill.sh <owner> <archive> [folder with the recipes]
 set -eu
 owner=$1

@@ -1,6 +1,7 @@
 #!/bin/sh
-# Tries the recipes offline, on an archive of these sources instead of the release's archive: Conan's, with a conan in
-# the PATH, and vcpkg's where VCPKG_ROOT names a clone of it. Eigen is the system's. usage: try.sh <scratch dir>
+# Tries the recipes offline, on an archive of these sources instead of the archive of the release. The Conan recipe
+# needs conan in the PATH. The vcpkg port is tried if VCPKG_ROOT is a clone of vcpkg. Eigen is from the system.
+# usage: try.sh <scratch dir>
 set -eu
 mkdir -p "$1"
 scratch=$(cd "$1" && pwd)
@@ -17,7 +18,7 @@ packaging/fill.sh somebody "$archive" "$recipes"
 grep -q "\"version\": \"$version\"" "$recipes/vcpkg/ports/fpbm/vcpkg.json"
 grep -q "\"$version\":" "$recipes/conan/config.yml"
 
-# A home of its own, where the system's Eigen stands in for Conan Center's.
+# A separate home of Conan, in which the system's Eigen replaces the recipe of Conan Center.
 sed -i "s|https://.*/v$version.tar.gz|file://$archive|" "$recipes/conan/all/conandata.yml"
 export CONAN_HOME="$scratch/conan"
 conan profile detect
@@ -25,7 +26,7 @@ conan create packaging/conan/eigen --no-remote
 conan create "$recipes/conan/all" --version "$version" --no-remote -s compiler.cppstd=17
 
 if test -z "${VCPKG_ROOT:-}"; then
-    echo "vcpkg not tried: VCPKG_ROOT names no clone of github.com/microsoft/vcpkg" >&2
+    echo "vcpkg not tried: VCPKG_ROOT is not set: set it to a clone of github.com/microsoft/vcpkg" >&2
     exit 0
 fi
 packaging/try_vcpkg.sh "$VCPKG_ROOT" "$recipes/vcpkg/ports/fpbm" "$archive" somebody "$version" "$PWD/tests/package" "$scratch/vcpkg"

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Runs the port's portfile by vcpkg's own scripts, and builds a program with the installed files. The program vcpkg is
-# not needed: the little that the scripts ask of it is done here. usage: try_vcpkg.sh <clone of vcpkg> <port> <archive
-# of the release> <owner> <version> <program's project> <scratch dir>
+# not needed: this script replaces the commands that the scripts call.
+# usage: try_vcpkg.sh <clone of vcpkg> <port> <archive of the release> <owner> <version> <program's project> <scratch dir>
 set -eu
 vcpkg=$1 port=$2 archive=$3 owner=$4 version=$5 program=$6 scratch=$7
 triplet=x64-linux
@@ -15,7 +15,7 @@ cat > "$scratch/vcpkg" << 'TOOL'
 case $1 in
     fetch) command -v "$2" ;;
     z-extract) tar -xf "$2" -C "$3" ;;
-    *) echo "vcpkg $*: not to be had offline" >&2; exit 1 ;;
+    *) echo "vcpkg $*: not available offline" >&2; exit 1 ;;
 esac
 TOOL
 chmod +x "$scratch/vcpkg"
@@ -41,7 +41,7 @@ done
 test ! -e "$package/debug" || fail "The package has files for debugging"
 test ! -e "$package/share/cmake" || fail "CMake's files are not in share/fpbm"
 if grep -r "$scratch" "$package"; then
-    fail "An absolute path is left in the package"
+    fail "The package contains an absolute path"
 fi
 
 cp -R "$package/." "$installed/"

@@ -1,7 +1,7 @@
-"""A planar arm under a desired tip velocity that its accelerations cannot meet in time.
+"""A planar arm whose bounds on acceleration are too small for the desired change of the tip velocity.
 
-Printed are the angle between the acceleration that a Tracker gives the tip and the missing velocity, the Tracker's
-scale of the task, and the scale of SNS in the same state, by fp.saturate. With SNS the angle is 0.
+Prints the angle between the tip acceleration by a Tracker and the missing velocity, the task scale of the Tracker, and
+the task scale of SNS in the same state, by fp.saturate. With SNS, the angle is 0.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from resolved import by_saturate
 import fpbm_cpp as fp
 
 GAINS = (3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)  # k1 [1/s]
-SHARES = (0.0, 0.1, 0.3, 0.6)  # Fractions of the desired velocity that the tip has already.
+SHARES = (0.0, 0.1, 0.3, 0.6)  # Start velocities of the tip, as fractions of the desired velocity.
 TICKS = (0, 5, 20, 60, 100)
 DESIRED = np.array([0.4, -0.6, 0.0])  # [m/s], toward the first vertex.
 ARM = SCENE.arm

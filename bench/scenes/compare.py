@@ -1,4 +1,4 @@
-"""The simulations of a scene: the published one, a Tracker by the gain of its tasks, and fp.saturate."""
+"""The simulations of a scene: the published simulation, a Tracker with several gains, and fp.saturate."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ class Level(Protocol):
     def task(self, k1: float) -> fp.Task: ...
 
     def reference(self, q: Array, qd: Array) -> tuple[Any, Any]:
-        """Point and velocity; the point is the task's own, so that the velocity alone counts."""
+        """Point and velocity. The point is the current point of the task, so that only the velocity acts."""
         ...
 
     def rows(self, q: Array, qd: Array) -> tuple[Array, Array, Array]:
@@ -28,7 +28,7 @@ class Level(Protocol):
 
 @dataclass(frozen=True)
 class Damping:
-    """Damping of the self-motion, at 1/T: joint velocities are to be zero."""
+    """Damping of the self-motion with the gain 1/T: the desired joint velocities are zero."""
 
     name: str = "damping"
 
@@ -44,7 +44,7 @@ class Damping:
 
 @dataclass(frozen=True)
 class FirstLink:
-    """The end of the first link heads for a point, in the plane."""
+    """The end of the first link moves toward a point, in the plane."""
 
     scene: Scene
     target: Array

@@ -1,7 +1,7 @@
 """The hexagon of Flacco, De Luca and Khatib (IROS 2012) with the repository's model of the KUKA LWR 4.
 
 The paper gives centre, radius, start, gains and bounds, but not the lengths of the model. With the lengths of
-lwr_segment.py one vertex cannot be reached within the joints' ranges, so the paper's table I cannot be compared.
+lwr_segment.py, one vertex is unreachable within the joint ranges. Therefore, table I of the paper cannot be compared.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ SCENE = Scene(TABLE, LIMITS, Q0, vertices(), kp=10.0, kd=0.1)
 
 
 def least_distance(point: Array) -> float:
-    """Smallest distance of the tip [m] from random starts, by clipped damped least squares, then by the gradient."""
+    """Smallest distance of the tip from a point [m]: damped least squares, then gradient steps, from random starts."""
     arm, rng, least = SCENE.arm, np.random.default_rng(0), np.inf
     for _ in range(STARTS):
         q = rng.uniform(LIMITS.lower, LIMITS.upper)

@@ -1,4 +1,4 @@
-"""Measures of a motion, from joint positions and velocities by NumPy alone, scales excepted."""
+"""Measures of a motion, from joint positions and velocities by NumPy alone, except for the scales."""
 
 from __future__ import annotations
 

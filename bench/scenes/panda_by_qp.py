@@ -1,6 +1,7 @@
 """OpenSoT's law on two levels, by bounded least squares of SciPy: an independent solver for panda_problems.py.
 
-Each step: the tip's least squares within the bounds; then the posture's, with the tip's result kept by a weight of 1e6.
+Each step solves the least squares of the tip within the bounds, and then the least squares of the posture. In the
+second problem, a weight of 1e6 keeps the result of the tip.
 """
 
 from __future__ import annotations

@@ -96,7 +96,7 @@ METHODS: dict[str, Callable[[Array, Array], Found]] = {
 
 
 def excess(found: Found, level: int) -> float:
-    """Largest share of a bound by which positions (rad), velocities or accelerations exceed it, by differences of q."""
+    """Largest excess over a bound, by differences of q: positions [rad], otherwise relative to the bound."""
     if level == 0:
         return float(np.maximum(LIMITS.lower - found.q, found.q - LIMITS.upper).max())
     if len(found.q) <= level:
@@ -106,7 +106,7 @@ def excess(found: Found, level: int) -> float:
 
 
 def off_line(found: Found) -> float:
-    """Largest distance of the tip from the straight line of its ends, as a share of the line's length."""
+    """Largest distance of the tip from the straight line between start and end, relative to its length."""
     p = np.array([PANDA.forward(q)[:3, 3] for q in found.q[:: max(1, len(found.q) // 100)]])
     line = (p[-1] - p[0]) / np.linalg.norm(p[-1] - p[0])
     return float(np.linalg.norm(np.cross(p - p[0], line), axis=1).max() / np.linalg.norm(p[-1] - p[0]))

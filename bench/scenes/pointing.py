@@ -1,4 +1,4 @@
-"""Tips that head for vertices, one after another: Flacco, De Luca and Khatib (IROS 2012), equations (15) to (17).
+"""Tips that move to vertices, one after another: Flacco, De Luca and Khatib (IROS 2012), equations (15) to (17).
 
 The tip's desired velocity points to the next vertex, with the speed kP |e| - kD |v|. A vertex is reached if the tip is
 within TOLERANCE.

@@ -64,7 +64,7 @@ def panda(folder: Path, problems: int) -> Iterator[str]:
     draw_panda(folder / "scenes_panda.png", rows)
     velocity, acceleration, qp = (row.solved for row in rows)
     yield "\n![Problems solved over time](scenes_panda.png)\n"
-    yield f"Solved by none: {np.sum(~velocity & ~acceleration & ~qp)}."
+    yield f"Problems that no method solves: {np.sum(~velocity & ~acceleration & ~qp)}."
     for name, solved in (("velocity", velocity), ("acceleration", acceleration)):
         yield (
             f"Solved by SciPy and not by the Tracker at {name} level: {np.sum(qp & ~solved)}; "
@@ -75,7 +75,7 @@ def panda(folder: Path, problems: int) -> Iterator[str]:
 
 
 def falls_short() -> Iterator[str]:
-    yield "## A demand beyond the bounds\n"
+    yield "## A desired velocity beyond the bounds\n"
     yield from beyond_bounds.run()
 
 

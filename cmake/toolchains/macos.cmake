@@ -5,13 +5,13 @@ set(CMAKE_SYSTEM_NAME Darwin)
 set(CMAKE_SYSTEM_PROCESSOR ${FPBM_MACOS_ARCH})
 set(CMAKE_CXX_COMPILER python-zig c++ -target ${FPBM_MACOS_ARCH}-macos.11.0)
 set(CMAKE_C_COMPILER python-zig cc -target ${FPBM_MACOS_ARCH}-macos.11.0)
-# Where little is optimised, zig adds sanitizers of its own.
+# At low optimisation levels, zig enables sanitizers.
 set(CMAKE_CXX_FLAGS_INIT -fno-sanitize=all)
-# Its linker crashes if CMake passes -bundle.
+# The linker of zig crashes if CMake passes -bundle.
 set(CMAKE_MODULE_LINKER_FLAGS_INIT -dynamiclib)
-# CMake requires one name for each of these, without arguments.
+# CMAKE_AR and CMAKE_RANLIB must be names of programs, without arguments.
 set(CMAKE_CXX_ARCHIVE_CREATE "python-zig ar qc <TARGET> <LINK_FLAGS> <OBJECTS>")
 set(CMAKE_CXX_ARCHIVE_FINISH "python-zig ranlib <TARGET>")
-# Nothing is installed, and a strip of other systems' knows no Mach-O.
+# Nothing is installed, and strip of another system does not support Mach-O.
 set(CMAKE_INSTALL_NAME_TOOL /bin/true)
 set(CMAKE_STRIP /bin/true)

@@ -50,8 +50,8 @@ inline void add_chain(urdf::Model& model, const fpbm::Chain<>& chain, std::strin
   add(model, "to_" + prefix + "flange", parent, prefix + "flange", chain.tip);
 }
 
-/// The robot_description of a chain from link "base" to link "flange". Link "base" is rotated relative to the root
-/// "base_link", as in the description of a UR.
+/// The robot_description of a chain to link "flange". The root "base_link" carries the chain and link "base", which is
+/// the base frame of the chain. Link "base" is rotated relative to "base_link", as in the description of a UR.
 [[nodiscard]] inline urdf::Model description_of(const fpbm::Chain<>& chain) {
   urdf::Model model;
   model.links_["base_link"] = std::make_shared<urdf::Link>(urdf::Link{"base_link", nullptr});

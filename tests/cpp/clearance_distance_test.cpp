@@ -39,10 +39,10 @@ class Distances : public ::testing::Test {
     return {size() * vector(), chance(0.1) ? Vector3(Vector3::Zero()) : Vector3(size() * vector())};
   }
 
-  /// A direction that is parallel or nearly parallel to `way`.
-  Vector3 near_parallel(const Vector3& way) {
+  /// A direction that is parallel or nearly parallel to `axis`.
+  Vector3 near_parallel(const Vector3& axis) {
     const Scalar angle = chance(0.3) ? Scalar(0) : static_cast<Scalar>(std::pow(10.0, random_.uniform(-18.0, -1.0)));
-    return uniform(-2, 2) * (way + angle * way.norm() * vector());
+    return uniform(-2, 2) * (axis + angle * axis.norm() * vector());
   }
 
   Scalar radius() { return chance(0.2) ? Scalar(0) : size(); }
@@ -102,11 +102,12 @@ class Distances : public ::testing::Test {
 
   /// Signed distance of a point from a shape, positive outside.
   static Scalar from(const Capsule<Scalar>& shape, const Vector3& point) {
-    const Vector3 way = shape.b - shape.a;
-    const Scalar t = way.isZero(0) ? Scalar(0)
-                                   : std::clamp(Scalar(way.stableNormalized().dot(point - shape.a) / way.stableNorm()),
-                                                Scalar(0), Scalar(1));
-    return (point - shape.a - t * way).stableNorm() - shape.radius;
+    const Vector3 segment = shape.b - shape.a;
+    const Scalar t = segment.isZero(0)
+                         ? Scalar(0)
+                         : std::clamp(Scalar(segment.stableNormalized().dot(point - shape.a) / segment.stableNorm()),
+                                      Scalar(0), Scalar(1));
+    return (point - shape.a - t * segment).stableNorm() - shape.radius;
   }
   static Scalar from(const Cuboid<Scalar>& shape, const Vector3& point) {
     const Vector3 beyond = (shape.pose.R.transpose() * (point - shape.pose.p)).cwiseAbs() - shape.half;
@@ -152,7 +153,7 @@ class Distances : public ::testing::Test {
   }
 
   /// The signed distance of convex shapes is the largest gap over all directions. If the distance of two points, one of
-  /// each shape, equals the gap along the normal, both are optimal.
+  /// each shape, equals the gap along the normal, the points and the normal are optimal.
   template <typename Second>
   void expect_widest_gap(const Nearest<Scalar>& found, const Capsule<Scalar>& first, const Second& second,
                          const std::string& where) {
@@ -171,12 +172,12 @@ class Distances : public ::testing::Test {
   void expect_slope(const Nearest<Scalar>& found, const Capsule<Scalar>& first, const Second& second,
                     const std::string& where) {
     const Scalar tolerance = slack(first, second);
-    const Scalar way = size();
+    const Scalar displacement = size();
     const Vector3 v = direction();
-    const Scalar away = nearest(moved(first, way * found.normal), second).distance;
-    ASSERT_NEAR(away - found.distance, way, tolerance + 32 * kEpsilon * way) << where;
-    const Scalar moved_by = nearest(moved(first, way * v), second).distance - found.distance;
-    ASSERT_LE(std::abs(moved_by), way + tolerance + 32 * kEpsilon * way) << where;
+    const Scalar away = nearest(moved(first, displacement * found.normal), second).distance;
+    ASSERT_NEAR(away - found.distance, displacement, tolerance + 32 * kEpsilon * displacement) << where;
+    const Scalar moved_by = nearest(moved(first, displacement * v), second).distance - found.distance;
+    ASSERT_LE(std::abs(moved_by), displacement + tolerance + 32 * kEpsilon * displacement) << where;
     const Scalar h = std::cbrt(kEpsilon) * (extent(first) + extent(second));
     const Nearest<Scalar> after = nearest(moved(first, h * v), second);
     const Nearest<Scalar> before = nearest(moved(first, -h * v), second);

@@ -47,7 +47,7 @@ Problem random_problem(Random& random, Eigen::Index n, Eigen::Index m, double le
   const Eigen::JacobiSVD<MatrixXd> above(problem.J1 * problem.unit.asDiagonal(), Eigen::ComputeFullV);
   const MatrixXd Z = above.matrixV().rightCols(n - 2);
   const Eigen::JacobiSVD<MatrixXd> own(matrix(m) * Z, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  VectorXd sigma = VectorXd::Ones(m) + 0.5 * random.uniform(m, -1.0, 1.0);  // Only the last one is small.
+  VectorXd sigma = VectorXd::Ones(m) + 0.5 * random.uniform(m, -1.0, 1.0);  // Only the last singular value is small.
   sigma(m - 1) = m == 1 ? 1.0 : least * sigma.head(m - 1).norm();
   const double size = std::pow(10.0, random.uniform(-3.0, 3.0));
   problem.J = size * own.matrixU() * sigma.asDiagonal() * own.matrixV().transpose() * Z.transpose() *

@@ -43,7 +43,7 @@ std::vector<Place> places() {
   return all;
 }
 
-/// The places whose round-off error is small enough for second differences.
+/// The places of subjects in double: for second differences, the round-off error of float is too large.
 std::vector<Place> places_in_double() {
   std::vector<Place> all = places();
   all.erase(std::remove_if(all.begin(), all.end(), [](const Place& each) { return each.subject.epsilon > 1e-10; }),
@@ -568,8 +568,8 @@ double speed_at_the_edge(double brake, std::uint32_t seed) {
   x.col(0) = random.uniform(4, 0.2, 1.2);
   arm.kinematics(Vector<4>(x.col(0)), loop.kinematics);
   const double direction = random.uniform(-kPi, kPi);
-  const Vector<2> way = 4.1 * Vector<2>(std::cos(direction), std::sin(direction)) - loop.kinematics.tip;
-  const Path<Line<2>> path(Line<2>(way), 5.0);
+  const Vector<2> displacement = 4.1 * Vector<2>(std::cos(direction), std::sin(direction)) - loop.kinematics.tip;
+  const Path<Line<2>> path(Line<2>(displacement), 5.0);
   AnchoredPath<Path<Line<2>>> references(path, loop.kinematics.tip);
   const auto derivative = [&](double t, const Matrix<4, 2>& at, Matrix<4, 2>& rate) noexcept {
     return loop.evaluate(t < 5.0 ? references.motion(t, t) : references.hold(), at, rate);

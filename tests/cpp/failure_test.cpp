@@ -21,7 +21,7 @@ namespace {
 struct Task {
   Eigen::VectorXd lengths;
   Eigen::VectorXd q0;
-  Vector<2> way;  ///< Displacement of the line [m].
+  Vector<2> displacement;  ///< [m]
   double duration;
   double dt;
   std::uint32_t seed;  ///< For the weights.
@@ -39,7 +39,7 @@ constexpr int kOpen = Eigen::Dynamic;
 
 template <typename Scheme>
 Ending run(const Task& task, const Scheme& scheme) {
-  const AnyPath<Position<2>> path(Path(Line<2>(task.way), task.duration));
+  const AnyPath<Position<2>> path(Path(Line<2>(task.displacement), task.duration));
   const State<kOpen> start{task.q0, Vector<kOpen>::Zero(task.q0.size())};
   const TimeGrid<> grid(task.duration, task.dt);
   const auto motion = recorded(any_planar_arm(task.lengths), path, erased(scheme), start, grid);
@@ -101,14 +101,14 @@ TEST_P(Failure, ends_a_line_that_leaves_the_workspace) {
       const double direction = random.uniform(-kPi, kPi);
       const double reach = lengths.sum();
       // Longer than the diameter of the workspace: leaves it from any start.
-      const Vector<2> way = 2.5 * reach * Vector<2>(std::cos(direction), std::sin(direction));
-      const Task task{lengths, q0, way, 5.0, dt, seed};
+      const Vector<2> displacement = 2.5 * reach * Vector<2>(std::cos(direction), std::sin(direction));
+      const Task task{lengths, q0, displacement, 5.0, dt, seed};
       const Ending ending = GetParam().run(task);
 
-      const Path<Line<2>> path(Line<2>(way), task.duration);
+      const Path<Line<2>> path(Line<2>(displacement), task.duration);
       double exit = 0.0;
       while ((tip(lengths, q0) + path.sample(exit).x).norm() <= reach) exit += dt;
-      const double longest_step = kPi / 2.0 * way.norm() / task.duration * dt;
+      const double longest_step = kPi / 2.0 * displacement.norm() / task.duration * dt;
 
       EXPECT_NE(ending.status, Status::kOk);
       EXPECT_TRUE(ending.finite);
@@ -129,8 +129,8 @@ TEST_P(Failure, rejects_a_singular_start) {
       q0(0) = direction;
       q0(1) = fold;
       for (const double length : {0.1, -0.1}) {
-        const Vector<2> way = length * Vector<2>(std::cos(direction), std::sin(direction));
-        const Ending ending = GetParam().run({random.uniform(n, 0.5, 1.5), q0, way, 1.0, 1e-2, 0});
+        const Vector<2> displacement = length * Vector<2>(std::cos(direction), std::sin(direction));
+        const Ending ending = GetParam().run({random.uniform(n, 0.5, 1.5), q0, displacement, 1.0, 1e-2, 0});
         EXPECT_EQ(ending.status, Status::kSingular);
         EXPECT_EQ(ending.samples, 0);
         EXPECT_EQ(ending.time, 0.0);

@@ -95,8 +95,8 @@ void pull(const Chain<>& chain, std::uint32_t seed, int ticks, Run& run) {
   Vector<kOpen> last = qd;
   for (int k = 0; k < ticks; ++k) {
     if (k % 500 == 0) {
-      const Vector<3> way = random.uniform(3, -1.0, 1.0);
-      target = Reference<Position<3>>::hold(Vector<3>(tracker.tip() + way));
+      const Vector<3> displacement = random.uniform(3, -1.0, 1.0);
+      target = Reference<Position<3>>::hold(Vector<3>(tracker.tip() + displacement));
       if (k % 1500 == 1000) target = wild_reference<Position<3>>(random, tracker.tip());
     }
     if (k % 3000 == 2500) tracker.stop();
@@ -289,17 +289,17 @@ TEST(Guard, avoids_posts_from_all_sides) {
   for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(trials(10)); ++seed) {
     Random random(seed);
     Vector<3> nearest_to_axis;
-    Vector<3> way;
+    Vector<3> direction;
     do {
       const double angle = random.uniform(-3.14, 3.14);
-      way = {std::cos(angle), std::sin(angle), 0.0};
+      direction = {std::cos(angle), std::sin(angle), 0.0};
       nearest_to_axis = elbow + random.uniform(0.4, 1.1) * (wrist - elbow) + random.uniform(3, -0.05, 0.05);
       nearest_to_axis(2) = 0.0;
-      nearest_to_axis -= nearest_to_axis.dot(way) * way;
+      nearest_to_axis -= nearest_to_axis.dot(direction) * direction;
     } while (nearest_to_axis.norm() < 0.25);
     for (const double speed : {0.1, 0.25, 0.5}) {
       const auto post_at = [&](int k) {
-        const Vector<3> foot = nearest_to_axis + (k * kTick * speed - 0.95) * way;
+        const Vector<3> foot = nearest_to_axis + (k * kTick * speed - 0.95) * direction;
         return Capsule<>{foot, foot + 1.1 * Vector<3>::UnitZ(), 0.04};
       };
       PandaTracker tracker(arm, Position<3>{}, law, State<kOpen>{ready(), Vector<7>::Zero()}, options,
@@ -308,7 +308,7 @@ TEST(Guard, avoids_posts_from_all_sides) {
       const auto home = Reference<Position<3>>::hold(tracker.tip());
       double nearest = 1e9;
       for (int k = 0; k * kTick * speed < 1.9; ++k) {
-        (void)tracker.guard().clearance().move(0, post_at(k), Vector<3>(speed * way));
+        (void)tracker.guard().clearance().move(0, post_at(k), Vector<3>(speed * direction));
         const auto tick = tracker.tick(home);
         auto clearance = tracker.guard().clearance();
         nearest = std::min(nearest, clearance.nearest_pair(tick.q).second);

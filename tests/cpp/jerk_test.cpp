@@ -325,14 +325,14 @@ TEST(Jerk, a_step_is_followed_along_its_line) {
     const auto scheme = FPBM<7>(0.6, Vector<7>(Vector<7>::Ones()), 20.0, 100.0, NullSpace<7>().with_damping(2.0));
     CompiledTracker tracker(arm, Pose{}, scheme, Vector<7>{0.0, -0.3, 0.0, -2.0, 0.0, 1.8, 0.8});
     auto reference = Reference<Pose>::hold(tracker.tip());
-    const Vector<3> way{0.2, 0.1, -0.05};
-    reference.x.p += way;
+    const Vector<3> displacement{0.2, 0.1, -0.05};
+    reference.x.p += displacement;
     double off = 0.0;
     int ticks = 0;
     for (int i = 0; i < 3000; ++i) {
       const auto tick = tracker.tick(reference);
       const Vector<3> error = tick.error.head<3>();
-      off = std::max(off, (error - error.dot(way) / way.squaredNorm() * way).norm());
+      off = std::max(off, (error - error.dot(displacement) / displacement.squaredNorm() * displacement).norm());
       if (tick.error.norm() > 1e-4) ticks = i + 1;
     }
     return std::make_pair(off, ticks);
@@ -368,7 +368,7 @@ TEST(Jerk, a_velocity_envelope_is_kept) {
   auto bounds = JointLimits<1>::none(1);
   bounds.set(0, {-2.75010, 2.75010, 2.62, 10.0, 5000.0, 0.30, 6.0});
   const Limits<Level::kAcceleration, 1> limits(bounds, kTick);
-  const auto most = [](double way) { return -0.30 + std::sqrt(12.0 * way); };
+  const auto most = [](double distance) { return -0.30 + std::sqrt(12.0 * distance); };
   for (int trial = 0; trial < trials(40); ++trial) {
     Random random(static_cast<std::uint32_t>(trial));
     State<1> state{Vector<1>(0.0), Vector<1>(0.0)};

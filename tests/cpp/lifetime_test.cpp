@@ -38,13 +38,13 @@ TYPED_TEST(Lifetimes, of_a_gram_matrix_spans_its_jacobian) {
 }
 
 TYPED_TEST(Lifetimes, of_an_anchored_path_spans_the_path) {
-  using Way = Path<Circle<TypeParam>>;
-  using Anchored = AnchoredPath<Way>;
+  using CirclePath = Path<Circle<TypeParam>>;
+  using Anchored = AnchoredPath<CirclePath>;
   using Point = Vector<2, TypeParam>;
-  EXPECT_TRUE((std::is_constructible_v<Anchored, const Way&, const Point&>));
-  EXPECT_TRUE((std::is_constructible_v<Anchored, Way&, Point>));
-  EXPECT_FALSE((std::is_constructible_v<Anchored, Way, const Point&>));
-  EXPECT_FALSE((std::is_constructible_v<Anchored, const Way, const Point&>));
+  EXPECT_TRUE((std::is_constructible_v<Anchored, const CirclePath&, const Point&>));
+  EXPECT_TRUE((std::is_constructible_v<Anchored, CirclePath&, Point>));
+  EXPECT_FALSE((std::is_constructible_v<Anchored, CirclePath, const Point&>));
+  EXPECT_FALSE((std::is_constructible_v<Anchored, const CirclePath, const Point&>));
 }
 
 /// In braces, the only form in which a loop can be constructed, a temporary lives as long as the loop.

@@ -58,12 +58,12 @@ TEST(Outside, joints_return_as_fast_as_bounds_allow) {
     const auto hold = Reference<Position<3>>::hold(tracker.tip());
     State<7> state{kReady, Vector<7>::Zero()};
     const auto joint = static_cast<Eigen::Index>(seed % 7);
-    const double way = random.uniform(0.0, 1.0) < 0.5 ? 1.0 : -1.0;
-    const double end = way > 0.0 ? bounds.upper(joint) : bounds.lower(joint);
-    state.q(joint) = end + way * random.uniform(0.0, 0.3);
+    const double direction = random.uniform(0.0, 1.0) < 0.5 ? 1.0 : -1.0;
+    const double end = direction > 0.0 ? bounds.upper(joint) : bounds.lower(joint);
+    state.q(joint) = end + direction * random.uniform(0.0, 0.3);
     state.qd(joint) = random.uniform(-3.0, 3.0);
-    const double least = least_time(way * (state.q(joint) - end), way * state.qd(joint), bounds.velocity(joint),
-                                    bounds.acceleration(joint));
+    const double least = least_time(direction * (state.q(joint) - end), direction * state.qd(joint),
+                                    bounds.velocity(joint), bounds.acceleration(joint));
     const int late = static_cast<int>((1.2 * least + 0.1) / kTick);
     double before = 0.0;
     for (int i = 0; i < late + 300; ++i) {
@@ -74,7 +74,7 @@ TEST(Outside, joints_return_as_fast_as_bounds_allow) {
       if (!fast) {
         ASSERT_TRUE((state.qd.cwiseAbs().array() <= bounds.velocity.array() + 1e-9).all()) << "seed " << seed;
       }
-      const double beyond = way * (state.q(joint) - end);
+      const double beyond = direction * (state.q(joint) - end);
       if (beyond > 1e-6) {
         ASSERT_LT(i, late) << "seed " << seed << ": still " << beyond << " outside, after at best " << least << " s";
         scale += tick.scale;
@@ -102,13 +102,14 @@ TEST(Outside, joints_stop_on_request) {
                             Vector<Eigen::Dynamic>(kReady), options);
     const auto hold = Reference<Position<3>>::hold(tracker.tip());
     tracker.stop();
-    const double slow = delay == 0 ? kTick : 1.5 * 0.0243;  // D of MeasuredLimiter, plus the time constant D/2.
+    const double slow = delay == 0 ? kTick : 1.5 * 0.0243;  // D + D/2, D = 24.3 ms: docs/realtime.md.
     for (std::uint32_t seed = 0; seed < 500; ++seed) {
       Random random(seed);
       const auto joint = static_cast<Eigen::Index>(seed % 7);
-      const double way = random.uniform(0.0, 1.0) < 0.5 ? 1.0 : -1.0;
+      const double direction = random.uniform(0.0, 1.0) < 0.5 ? 1.0 : -1.0;
       State<7> state{kReady, Vector<7>::Zero()};
-      state.q(joint) = (way > 0.0 ? bounds.upper(joint) : bounds.lower(joint)) + way * random.uniform(0.1, 0.3);
+      state.q(joint) =
+          (direction > 0.0 ? bounds.upper(joint) : bounds.lower(joint)) + direction * random.uniform(0.1, 0.3);
       state.qd(joint) = random.uniform(-1.0, 1.0);
       const double speed = std::abs(state.qd(joint));
       const double start = state.q(joint);

@@ -43,7 +43,7 @@ TEST(Manipulability, keeps_its_digits_near_singular_postures) {
     const PlanarArm<4> straight(Vector<4>(1.0, 0.8, 0.6, 0.4));
     EXPECT_EQ(manipulability_gradient<Position<2>>(straight, Vector<4>(turn, 0.0, 0.0, 0.0)), Vector<4>::Zero());
   }
-  // The condition number of J is 17 here. The linear system with J Jᵀ has its square. The last digits depend on the
+  // The condition number is 17 for J, and 17² for the linear system with J Jᵀ. The last digits depend on the
   // processor.
   constexpr double kRoundOff = 17 * 17 * std::numeric_limits<double>::epsilon();
   EXPECT_NEAR(manipulability_gradient<Position<2>>(arm, Vector<2>(0.4, 0.3))(1), std::cos(0.3), kRoundOff);

@@ -55,7 +55,7 @@ class LateArm {
 
 /// Errors of the measured states.
 struct Sensor {
-  double step;   // Positions are rounded to multiples of it [rad].
+  double step;   // Resolution, to whose multiples positions are rounded [rad].
   double noise;  // Largest error of velocities, in both directions [rad/s].
 
   template <int N>

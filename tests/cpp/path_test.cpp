@@ -106,11 +106,11 @@ TEST_P(Paths, start_where_the_tip_is) {
 }
 
 TEST_P(Paths, close_if_their_shape_does) {
-  const double way = GetParam().sample(kT).x.norm();
+  const double displacement = GetParam().sample(kT).x.norm();
   if (GetParam().closed) {
-    EXPECT_LE(way, 32.0 * GetParam().epsilon);
+    EXPECT_LE(displacement, 32.0 * GetParam().epsilon);
   } else {
-    EXPECT_NEAR(way, std::hypot(0.5, 1.25), 4.0 * GetParam().epsilon);
+    EXPECT_NEAR(displacement, std::hypot(0.5, 1.25), 4.0 * GetParam().epsilon);
   }
 }
 

@@ -255,9 +255,9 @@ Vector<kOpen> open_posture(const AnyArm<Position<3>>& arm) {
 template <typename Space, typename Scheme>
 void expect_to_reach_a_near_target(const AnyArm<Position<3>>& arm, const Scheme& scheme) {
   CompiledTracker tracker(arm, Space{}, scheme, open_posture(arm));
-  Vector<Space::kRows> way = Vector<Space::kRows>::Zero();
-  way.template head<3>() = Vector<3>(0.02, -0.03, 0.01);
-  const auto target = Reference<Space>::hold(Space::template displace<double>(tracker.tip(), way));
+  Vector<Space::kRows> displacement = Vector<Space::kRows>::Zero();
+  displacement.template head<3>() = Vector<3>(0.02, -0.03, 0.01);
+  const auto target = Reference<Space>::hold(Space::template displace<double>(tracker.tip(), displacement));
   const JointLimits<kOpen>& bounds = arm.limits();
   for (int i = 0; i < 1000; ++i) {
     const auto tick = tracker.tick(target);

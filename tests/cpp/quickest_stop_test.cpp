@@ -56,7 +56,7 @@ TYPED_TEST(QuickestStops, are_motions_within_their_bounds_to_their_end_position)
     const auto where = "case " + std::to_string(i);
     const Scalar h = duration / kSteps;
     const Scalar bend = stop.jerk * h;  // Change of the acceleration in a step.
-    Scalar way(0);
+    Scalar displacement(0);
     AxisState<Scalar> now = stop.ahead(start, Scalar(0));
     ASSERT_NEAR(now.q, start.q, 64 * this->kEpsilon * size) << where;
     ASSERT_NEAR(now.v, start.v, 64 * this->kEpsilon * size / duration) << where;
@@ -72,8 +72,9 @@ TYPED_TEST(QuickestStops, are_motions_within_their_bounds_to_their_end_position)
           << where;
       ASSERT_NEAR(next.v - now.v, h * (now.a + next.a) / 2, bend * h / 4 + 256 * this->kEpsilon * size / duration)
           << where;
-      way += h * (now.v + Scalar(4) * middle.v + next.v) / 6;
-      ASSERT_NEAR(next.q, start.q + way, bend * h * h + 1024 * this->kEpsilon * size) << where << ", step " << k;
+      displacement += h * (now.v + Scalar(4) * middle.v + next.v) / 6;
+      ASSERT_NEAR(next.q, start.q + displacement, bend * h * h + 1024 * this->kEpsilon * size)
+          << where << ", step " << k;
       now = next;
     }
     ASSERT_EQ(now.v, Scalar(0)) << where;

@@ -83,10 +83,11 @@ void expect_to_stay(const Arm& arm, const Scheme& scheme, const Vector<kOpen, Sc
 
 /// The null-space motion drives one joint against its bound, and moves other joints. The joint stays on its bound.
 template <typename Scalar, typename Arm>
-void expect_not_to_be_pressed_off(const Arm& arm, const Vector<kOpen, Scalar>& q0, Eigen::Index joint, Scalar way) {
+void expect_not_to_be_pressed_off(const Arm& arm, const Vector<kOpen, Scalar>& q0, Eigen::Index joint,
+                                  Scalar displacement) {
   const Vector<kOpen, Scalar> ones = Vector<kOpen, Scalar>::Ones(q0.size());
   auto beyond = q0;
-  beyond(joint) += way;
+  beyond(joint) += displacement;
   const auto z = NullSpace<kOpen, Scalar>{}.with_damping(Scalar(4)).with_rest_posture(beyond, Scalar(4));
   CompiledTracker tracker(arm, Position<3>{}, FPBM<kOpen, Scalar>(Scalar(0.6), ones, Scalar(20), Scalar(100), z), q0);
   const auto hold = Reference<Position<3>, Scalar>::hold(tracker.tip());

@@ -65,9 +65,9 @@ struct Law {
   /// The motion nearest to a null-space motion with J u = task.
   [[nodiscard]] Eigen::VectorXd motion(const Eigen::MatrixXd& J, const Eigen::VectorXd& task,
                                        const Eigen::VectorXd& near) const {
-    const Eigen::MatrixXd way = inverse_weights.asDiagonal() * J.transpose();
-    const Eigen::MatrixXd gram = J * way + 4e-4 * Eigen::MatrixXd::Identity(J.rows(), J.rows());
-    return near + way * gram.llt().solve(task - J * near);
+    const Eigen::MatrixXd weighted_transpose = inverse_weights.asDiagonal() * J.transpose();
+    const Eigen::MatrixXd gram = J * weighted_transpose + 4e-4 * Eigen::MatrixXd::Identity(J.rows(), J.rows());
+    return near + weighted_transpose * gram.llt().solve(task - J * near);
   }
 };
 
@@ -157,8 +157,8 @@ void check_motions(const std::string& name, const Chain<>& chain, double jerk_pe
           return largest_scale(J, step.box.lower - wider, step.box.upper + wider, step.from, step.goal, {}, {});
         };
         double best = optimum(kSlack);
-        // The optimum is concave in the slack. Therefore this value is at least the optimum without slack, without the
-        // part of an ill-conditioned optimum that is proportional to the slack.
+        // Extrapolates the optimum linearly to zero slack. Since the optimum is concave in the slack, the result is at
+        // least the optimum without slack.
         if (motion.scale / step.first < best - 1e-6) best = 2.0 * optimum(kSlack / 2.0) - best;
         tally.add(motion.scale / step.first, best);
       }

@@ -92,17 +92,17 @@ class Driven {
     const Scalar u = share <= 0.0 ? box.lower(0) : share >= 1.0 ? box.upper(0) : inside;
     const State<1, Scalar> before = state_;
     const Scalar from = last_(0);
-    Scalar way = h;
+    Scalar displacement = h;
     if constexpr (kLevel == Level::kVelocity) {
       last_(0) = (u - qd()) / h;
       state_.qd(0) = u;
-      way *= u;
+      displacement *= u;
     } else {
       last_(0) = u;
       state_.qd(0) += h * u;
-      way *= before.qd(0) + h / Scalar(2) * u;
+      displacement *= before.qd(0) + h / Scalar(2) * u;
     }
-    state_.q(0) += way;
+    state_.q(0) += displacement;
     ASSERT_NO_FATAL_FAILURE(expect_bounds(before, from));
     ASSERT_EQ(refusal(), "");
   }
@@ -307,9 +307,9 @@ void expect_to_be_made_again(const Scheme& scheme, int motions) {
     for (int tick = 0; tick < 600; ++tick) {
       if (tick % 100 == 0) {
         const double size = spread(random, 0.01, 3.0);
-        const Vector<3> way = random.uniform(3, -size, size);
+        const Vector<3> displacement = random.uniform(3, -size, size);
         const Vector<3> wild = random.uniform(3, -10.0, 10.0);
-        reference.x = tracker.tip() + way.cast<Scalar>();
+        reference.x = tracker.tip() + displacement.cast<Scalar>();
         reference.xdd = wild.cast<Scalar>();
       }
       tracker.tick(reference);

@@ -108,13 +108,13 @@ void expect_waypoints() {
     expect_exact_derivatives(timed);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const auto here = timed.sample(times[i]);
-      const auto way = Space::template difference<double>(points[i], points[0]);
+      const auto expected = Space::template difference<double>(points[i], points[0]);
       const auto displacement = Space::template difference<double>(here.x, Space::template origin<double>());
       if constexpr (std::is_same_v<Space, Pose>) {
         EXPECT_LE((here.x.R * points[0].R - points[i].R).norm(), 1e-12);
-        EXPECT_LE((displacement - way).template head<3>().norm(), 1e-12);
+        EXPECT_LE((displacement - expected).template head<3>().norm(), 1e-12);
       } else {
-        EXPECT_LE((displacement - way).norm(), 1e-12);
+        EXPECT_LE((displacement - expected).norm(), 1e-12);
       }
       // C² across the knot.
       constexpr double kNear = 1e-9;
@@ -145,11 +145,12 @@ TEST(Spline, has_four_continuous_derivatives) {
     constexpr double kStep = 1e-3;
     const auto at = [&](int steps) { return Vector<2>(spline.at(times[i] + steps * kStep).xdd); };
     // Within a piece, the acceleration is a cubic, which four points determine.
-    const auto jerk = [&](int way) {
-      return Vector<2>((-11 * at(0) + 18 * at(way) - 9 * at(2 * way) + 2 * at(3 * way)) / (6 * way * kStep));
+    const auto jerk = [&](int direction) {
+      return Vector<2>((-11 * at(0) + 18 * at(direction) - 9 * at(2 * direction) + 2 * at(3 * direction)) /
+                       (6 * direction * kStep));
     };
-    const auto snap = [&](int way) {
-      return Vector<2>((2 * at(0) - 5 * at(way) + 4 * at(2 * way) - at(3 * way)) / (kStep * kStep));
+    const auto snap = [&](int direction) {
+      return Vector<2>((2 * at(0) - 5 * at(direction) + 4 * at(2 * direction) - at(3 * direction)) / (kStep * kStep));
     };
     EXPECT_LE((jerk(1) - jerk(-1)).norm(), 1e-8 * (1 + jerk(1).norm()));
     EXPECT_LE((snap(1) - snap(-1)).norm(), 1e-6 * (1 + snap(1).norm()));
@@ -262,24 +263,31 @@ TEST(SpacePaths, invalid_paths_are_rejected) {
             "u[1] = inf: must be finite");
   EXPECT_EQ(refusal([&] { return WithRotation(circle, Vector<1>(kInf)); }), "rotation[0] = inf: must be finite");
 
-  using Way = Waypoints<Position<2>>;
+  using PlanarWaypoints = Waypoints<Position<2>>;
   const std::vector<Vector<2>> points{{0, 0}, {1, 0}, {1, 1}};
-  EXPECT_EQ(refusal([&] { return Way({{0, 0}}, {0.0}); }), "points has 1 entries: must have at least 2");
-  EXPECT_EQ(refusal([&] { return Way(points, {0.0, 1.0}); }), "times has 2 entries: must have 3, one per point");
-  EXPECT_EQ(refusal([&] { return Way(points, {0.5, 1.0, 2.0}); }), "times[0] = 0.5: must be 0");
+  EXPECT_EQ(refusal([&] { return PlanarWaypoints({{0, 0}}, {0.0}); }), "points has 1 entries: must have at least 2");
   EXPECT_EQ(refusal([&] {
-              return Way(points, {0.0, 1.0, 1.0});
+              return PlanarWaypoints(points, {0.0, 1.0});
+            }),
+            "times has 2 entries: must have 3, one per point");
+  EXPECT_EQ(refusal([&] { return PlanarWaypoints(points, {0.5, 1.0, 2.0}); }), "times[0] = 0.5: must be 0");
+  EXPECT_EQ(refusal([&] {
+              return PlanarWaypoints(points, {0.0, 1.0, 1.0});
             }),
             "times[2] = 1: must be finite and later than the previous time");
-  EXPECT_EQ(refusal([&] { return Way({{0, 0}, {1, kInf}}, {0.0, 1.0}); }), "points[1][1] = inf: must be finite");
-  EXPECT_EQ(refusal([&] { return Way::lasting(points, -1.0); }), "duration = -1: must be positive and finite");
   EXPECT_EQ(refusal([&] {
-              return Way::lasting({{0, 0}, {0, 0}}, 1.0);
+              return PlanarWaypoints({{0, 0}, {1, kInf}}, {0.0, 1.0});
+            }),
+            "points[1][1] = inf: must be finite");
+  EXPECT_EQ(refusal([&] { return PlanarWaypoints::lasting(points, -1.0); }),
+            "duration = -1: must be positive and finite");
+  EXPECT_EQ(refusal([&] {
+              return PlanarWaypoints::lasting({{0, 0}, {0, 0}}, 1.0);
             }),
             "points[1]: must differ from the previous point");
-  EXPECT_EQ(refusal([&] { return Way::within(points, {}); }),
+  EXPECT_EQ(refusal([&] { return PlanarWaypoints::within(points, {}); }),
             "bounds: at least one must limit the tip: give a bound on velocity or acceleration");
-  EXPECT_EQ(refusal([&] { return Way::within(points, {0.0}); }), "velocity = 0: must be positive");
+  EXPECT_EQ(refusal([&] { return PlanarWaypoints::within(points, {0.0}); }), "velocity = 0: must be positive");
 }
 
 }  // namespace

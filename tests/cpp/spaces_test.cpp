@@ -25,9 +25,9 @@ TEST(Spaces, difference_and_displace_are_inverse_to_each_other) {
       EXPECT_LE((Pose::difference<double>(x, y) - d).norm(), 1e-14);
 
       const Vector<3> planar = random.uniform(3, -1, 1);
-      const Vector<3> way{0.3, -0.2, std::min(size, 3.1)};
-      const Vector<3> moved = PlanarPose::displace<double>(planar, way);
-      EXPECT_LE((PlanarPose::difference<double>(moved, planar) - way).norm(), 1e-15);
+      const Vector<3> displacement{0.3, -0.2, std::min(size, 3.1)};
+      const Vector<3> moved = PlanarPose::displace<double>(planar, displacement);
+      EXPECT_LE((PlanarPose::difference<double>(moved, planar) - displacement).norm(), 1e-15);
     }
   }
 }
@@ -180,9 +180,9 @@ TEST(PoseTask, that_leaves_the_workspace_ends) {
   };
   for (int trial = 0; trial < 40; ++trial) {
     SCOPED_TRACE("trial " + std::to_string(trial));
-    const Vector<3> way = 3.0 * Vector<3>(random.uniform(3, -1, 1)).normalized();
-    const Path line(Line<3>(way), 4.0);
-    const double speed = kPi / 2 * way.norm() / 4.0;
+    const Vector<3> displacement = 3.0 * Vector<3>(random.uniform(3, -1, 1)).normalized();
+    const Path line(Line<3>(displacement), 4.0);
+    const double speed = kPi / 2 * displacement.norm() / 4.0;
     const DiagonalWeights<7> weights(Vector<7>(random.uniform(7, 1, 4)));
     const WithRotation turned(line, Vector<3>(random.uniform(3, -1, 1)));
     const Vector<7> ones = Vector<7>::Ones();

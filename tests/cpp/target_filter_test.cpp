@@ -68,7 +68,7 @@ class Watched {
     const Reference<Space, Scalar> before = filter.reference();
     filter.advance();
     const Reference<Space, Scalar>& now = filter.reference();
-    const auto way = Space::template difference<Scalar>(now.x, before.x);
+    const auto displacement = Space::template difference<Scalar>(now.x, before.x);
     constexpr Scalar kEpsilon = std::numeric_limits<Scalar>::epsilon();
     for (int i = 0; i < Space::kRows; ++i) {
       const bool turns = i >= Space::kRows - Space::kTurns;
@@ -82,7 +82,7 @@ class Watched {
                   J * dt_ * dt_ / 4 * Scalar(1.001) + 64 * kEpsilon * V)
           << i;
       const Scalar size = extent(now.x) + extent(before.x);
-      ASSERT_NEAR(way(i), dt_ * (now.xd(i) + before.xd(i)) / 2,
+      ASSERT_NEAR(displacement(i), dt_ * (now.xd(i) + before.xd(i)) / 2,
                   J * dt_ * dt_ * dt_ / 12 * Scalar(1.001) + 64 * kEpsilon * (size + V))
           << i;
     }
@@ -287,8 +287,8 @@ TYPED_TEST(TargetFilters, move_slower_than_a_bit_per_tick) {
       ASSERT_TRUE(filter.push_twist(v));
       filter.advance();
     }
-    const auto way = Space::template difference<Scalar>(filter.reference().x, x0);
-    EXPECT_LE((way - 20 * v).cwiseAbs().maxCoeff(), slow / 100 * std::sqrt(Scalar(20000))) << size;
+    const auto displacement = Space::template difference<Scalar>(filter.reference().x, x0);
+    EXPECT_LE((displacement - 20 * v).cwiseAbs().maxCoeff(), slow / 100 * std::sqrt(Scalar(20000))) << size;
   }
 }
 
@@ -323,11 +323,11 @@ TYPED_TEST(TargetFilters, have_references_within_the_tick) {
     filter.advance();
     EXPECT_EQ(filter.reference().xdd, end.xdd);
     // Simpson's rule: the change of the jerk within the tick is its only error.
-    const auto way = Space::template difference<Scalar>(end.x, start.x);
+    const auto displacement = Space::template difference<Scalar>(end.x, start.x);
     const auto simpson = (options.dt / 6 * (start.xd + 4 * middle.xd + end.xd)).eval();
     const Scalar slack =
         jerk * options.dt * options.dt * options.dt / 100 + 1000 * std::numeric_limits<Scalar>::epsilon();
-    EXPECT_LE((way - simpson).cwiseAbs().maxCoeff(), slack) << k;
+    EXPECT_LE((displacement - simpson).cwiseAbs().maxCoeff(), slack) << k;
   }
 }
 

@@ -139,8 +139,9 @@ TEST(Tracker, gives_the_same_bits_for_the_same_inputs) {
   auto reference = Reference<Pose>::hold(one.tip());
   for (int i = 0; i < 5000; ++i) {
     if (i % 50 == 0) {
-      const Vector<6> way = random.uniform(6, -0.5, 0.5);
-      reference = {Pose::displace<double>(one.tip(), way), random.uniform(6, -1.0, 1.0), random.uniform(6, -1.0, 1.0)};
+      const Vector<6> displacement = random.uniform(6, -0.5, 0.5);
+      reference = {Pose::displace<double>(one.tip(), displacement), random.uniform(6, -1.0, 1.0),
+                   random.uniform(6, -1.0, 1.0)};
     }
     ASSERT_TRUE(same_bits(one.tick(reference), two.tick(reference))) << i;
   }
@@ -154,8 +155,8 @@ void expect_to_reach_changing_targets(const Scheme& scheme) {
   Random random(5);
   for (int change = 0; change < 8; ++change) {
     auto target = home;
-    const Vector<Space::kRows> way = random.uniform(Space::kRows, -0.15, 0.15);
-    target.x = Space::template displace<double>(home.x, way);
+    const Vector<Space::kRows> displacement = random.uniform(Space::kRows, -0.15, 0.15);
+    target.x = Space::template displace<double>(home.x, displacement);
     for (int i = 0; i < 300; ++i) checked_tick(tracker, target);
   }
   for (int i = 0; i < 8000; ++i) checked_tick(tracker, home);
@@ -238,8 +239,8 @@ void expect_to_stop(const Scheme& scheme) {
   tracker.stop();
   for (int i = 0; i * kTick <= quickest + 2.0 * kTick; ++i) {
     EXPECT_EQ(checked_tick(tracker, follower).scale, 0.0);
-    const Vector<7> way = tracker.state().q - moving.q;
-    EXPECT_LE((way - way.norm() * moving.qd.normalized()).norm(), 1e-12);
+    const Vector<7> displacement = tracker.state().q - moving.q;
+    EXPECT_LE((displacement - displacement.norm() * moving.qd.normalized()).norm(), 1e-12);
   }
   EXPECT_EQ(tracker.state().qd.norm(), 0.0);
   EXPECT_EQ(follower.time(), time);

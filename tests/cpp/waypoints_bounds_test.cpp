@@ -20,16 +20,16 @@ std::vector<typename Space::template Point<Scalar>> random_points(Random& random
   Point x = Space::template origin<Scalar>();
   const int count = static_cast<int>(random.uniform(2.0, 7.0));
   for (int i = 0; i < count; ++i) {
-    Vector<Space::kRows, Scalar> way =
+    Vector<Space::kRows, Scalar> displacement =
         (random.uniform(Space::kRows, -1.0, 1.0) * std::pow(10.0, random.uniform(-3.0, 0.0))).template cast<Scalar>();
     if constexpr (Space::kTurns == 3) {
       const Vector<3> axis = random.uniform(3, -1.0, 1.0).normalized();
       const double angle = random.uniform(0.0, 1.0) < 0.25 ? kTwoPi / 2 : random.uniform(0.0, 3.1);
-      way.template tail<3>() = (angle * axis).template cast<Scalar>();
+      displacement.template tail<3>() = (angle * axis).template cast<Scalar>();
     } else if constexpr (Space::kTurns == 1) {
-      way(2) = static_cast<Scalar>(random.uniform(-3.0, 3.0));
+      displacement(2) = static_cast<Scalar>(random.uniform(-3.0, 3.0));
     }
-    x = Space::template displace<Scalar>(x, way);
+    x = Space::template displace<Scalar>(x, displacement);
     if constexpr (Space::kTurns == 3) x.R = orthonormal(x.R);
     points.push_back(x);
   }

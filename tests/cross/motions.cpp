@@ -4,8 +4,8 @@
 
 #include "fpbm/fpbm.hpp"
 
-// Where motions end, in hexadecimal, so that the same program on two machines can be compared to the last bit
-// (compare.py). A line for each motion: its name, its status, then numbers.
+// Prints the last states of motions in hexadecimal, so that the same program on two machines can be compared to the
+// last bit (compare.py). A line for each motion: its name, its status, then numbers.
 namespace {
 
 using namespace fpbm;
@@ -27,7 +27,7 @@ void roll(const std::string& name, const Arm& arm, const Path& path, const Schem
   print("rollout/" + name, result.status, result.last.q);
 }
 
-/// The same by a tracker within the arm's limits, which are met.
+/// The same path by a tracker, with active limits.
 template <typename Space, typename Arm, typename Path, typename Scheme>
 void follow(const std::string& name, const Arm& arm, const Path& path, const Scheme& scheme,
             const Vector<Arm::kDof, typename Arm::Scalar>& q) {

@@ -17,7 +17,7 @@ from typing import Any
 import tomllib
 
 ROOT = Path(__file__).parents[2]
-OTHERS = {"echo", "tee", "setcap"}  # The system's, which need rights or would change it.
+OTHERS = {"echo", "tee", "setcap"}  # Programs of the system, which need privileges or change the system.
 
 
 def check_shell(example: Any) -> None:

@@ -1,7 +1,7 @@
-"""Programs of docs/coming_from.md, each library's beside this library's. `make peers` installs and runs them.
+"""Programs of docs/coming_from.md, for other libraries and for this library. `make peers` installs and runs them.
 
-Each program runs in a virtual environment of its own in the folder FPBM_PEERS, as the libraries' requirements exclude
-each other; PyKDL is Debian's. Without FPBM_PEERS all are skipped.
+Each program runs in its own virtual environment in the folder FPBM_PEERS, because the requirements of the libraries
+conflict. PyKDL is from Debian. Without FPBM_PEERS, all tests are skipped.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def run(python: Path | str, folder: Path, program: str) -> Any:
 
 
 def environment(name: str) -> Path:
-    """The interpreter of a virtual environment with a library. Skips where the library cannot be installed."""
+    """The interpreter of a virtual environment with a library. Skips the test if the library cannot be installed."""
     folder = Path(os.environ["FPBM_PEERS"]).resolve() / name.lower()
     python = folder / "bin" / "python"
     if not python.exists():
@@ -74,7 +74,7 @@ def environment(name: str) -> Path:
 
 
 def require_loading(name: str, python: Path | str, folder: Path) -> None:
-    """Skips where TSID's package does not fit Pinocchio's: it then aborts."""
+    """Skips the test if the packages of TSID and Pinocchio are incompatible: then, TSID aborts."""
     program = 'import tsid\ntsid.RobotWrapper("panda.urdf", [], False)'
     if name == "TSID" and subprocess.run([python, "-c", program], cwd=folder, capture_output=True).returncode != 0:
         pytest.skip("TSID's package cannot load a robot beside this Pinocchio")

@@ -1,4 +1,4 @@
-"""The reference has every public name, the page on installing every extra."""
+"""The reference has every public name, and the page on installation has every extra."""
 
 from __future__ import annotations
 

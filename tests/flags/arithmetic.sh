@@ -1,6 +1,6 @@
 #!/bin/sh
 # Under flags that relax the rules of arithmetic, the library is right, or compilation fails with an explanation.
-# Under those that keep to IEEE 754 it must be right.
+# Under flags that keep to IEEE 754, the library must be right.
 # usage: arithmetic.sh <C++ compiler> <scratch dir> <Eigen's include dir>
 set -eu
 compiler=$1

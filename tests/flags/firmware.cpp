@@ -2,8 +2,8 @@
 #include <cstring>
 #include <fpbm/fpbm.hpp>
 
-/// A program without exceptions: the paper's circle in float, which succeeds where the arm ends as in the independent
-/// solution. With the argument "bad" it builds an arm that cannot be, and must not get beyond it.
+/// A program without exceptions: the paper's circle in float. Succeeds if the last posture equals the independent
+/// solution. With the argument "bad", the program constructs an invalid arm, and must end there.
 int main(int argc, char** argv) {
   using namespace fpbm;
   if (argc > 1 && std::strcmp(argv[1], "bad") == 0) {

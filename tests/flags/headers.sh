@@ -1,7 +1,7 @@
 #!/bin/sh
 # Every header compiles alone: one unit each that includes nothing else. Only the parsing counts.
-# A header that includes Eigen, itself or through others, gets Eigen/Core precompiled, which takes most of the time: all of
-# its own text stands behind the include that brings Eigen. The others get nothing.
+# If a header includes Eigen, directly or indirectly, a precompiled Eigen/Core is included before, because Eigen needs
+# most of the time. Other headers have no include before.
 # usage: headers.sh <C++ compiler> <scratch dir> <Eigen's include dir>
 set -eu
 compiler=$1
@@ -20,7 +20,7 @@ parse -x c++-header "$scratch/eigen.hpp" -o "$scratch/eigen.hpp.gch"
 
 cd "$include"
 find . -name '*.hpp' | sed 's|^\./||' | LC_ALL=C sort >"$scratch/all"
-# Those that include Eigen, and those that include these.
+# Headers that include Eigen, directly or indirectly.
 # shellcheck disable=SC2046 # A list of names without spaces.
 awk '
   /^#include <Eigen\// { eigen[FILENAME] = 1 }

@@ -1,6 +1,6 @@
 // Makes states, references, options and limits of arbitrary bytes, and checks the promises of the tracker and the
 // schemes: no crash, no NaN or infinity in a result, no bound violated from a viable start, the same bits for the same
-// input, and a good tick again as soon as the reference is good again.
+// input, and a tick without an error as soon as the reference is valid again.
 
 #include <cmath>
 #include <cstdio>
@@ -79,12 +79,12 @@ struct Keeper {
 
 template <typename Space>
 fpbm::Reference<Space> any_reference(Bytes& bytes, const typename Space::template Point<double>& near) {
-  fpbm::Vector<Space::kRows> way, xd, xdd;
+  fpbm::Vector<Space::kRows> displacement, xd, xdd;
   const bool far = bytes.chance(64);
-  bytes.fill(way, far ? -10.0 : -0.01, far ? 10.0 : 0.01);
+  bytes.fill(displacement, far ? -10.0 : -0.01, far ? 10.0 : 0.01);
   bytes.fill(xd, -1.0, 1.0);
   bytes.fill(xdd, -10.0, 10.0);
-  return {Space::template displace<double>(near, way), xd, xdd};
+  return {Space::template displace<double>(near, displacement), xd, xdd};
 }
 
 /// Usual bounds, some of them infinite; rarely any bounds, which makes the case wild.
@@ -119,8 +119,8 @@ fpbm::State<N> any_start(Bytes& bytes, const fpbm::JointLimits<N>& limits, bool&
     const double upper = std::isfinite(limits.upper(i)) ? limits.upper(i) : std::max(3.0, lower + 6.0);
     start.q(i) = bytes.within(lower, upper);
     if (bytes.chance(128)) continue;
-    const double way = std::min(limits.upper(i) - start.q(i), start.q(i) - limits.lower(i));
-    const double fastest = std::min({limits.velocity(i), std::sqrt(2.0 * limits.acceleration(i) * way), 10.0});
+    const double distance = std::min(limits.upper(i) - start.q(i), start.q(i) - limits.lower(i));
+    const double fastest = std::min({limits.velocity(i), std::sqrt(2.0 * limits.acceleration(i) * distance), 10.0});
     start.qd(i) = fastest * bytes.within(-1.0, 1.0);
   }
   if (bytes.chance(4)) {
@@ -152,18 +152,18 @@ fpbm::Clearance<7> any_clearance(Bytes& bytes) {
   static const auto never_collide = fpbm::presets::never_collide::panda();
   std::vector<fpbm::Obstacle<>> obstacles;
   const std::uint8_t which = bytes.byte();
-  fpbm::Vector<3> place, way;
+  fpbm::Vector<3> place, direction;
   for (int kind = 0; kind < 3; ++kind) {
     if ((which >> kind & 1) == 0) continue;
     bytes.fill(place, -1.0, 1.0);
-    bytes.fill(way, -1.0, 1.0);
+    bytes.fill(direction, -1.0, 1.0);
     const double size = bytes.spread(1e-3, 0.5);
     if (kind == 0) {
-      obstacles.push_back({"wall", fpbm::HalfSpace<>{way.normalized(), -size}});
+      obstacles.push_back({"wall", fpbm::HalfSpace<>{direction.normalized(), -size}});
     } else if (kind == 1) {
-      obstacles.push_back({"box", fpbm::Cuboid<>{{place, fpbm::rotation(way)}, fpbm::Vector<3>::Constant(size)}});
+      obstacles.push_back({"box", fpbm::Cuboid<>{{place, fpbm::rotation(direction)}, fpbm::Vector<3>::Constant(size)}});
     } else {
-      obstacles.push_back({"post", fpbm::Capsule<>{place, place + way, 0.1 * size}});
+      obstacles.push_back({"post", fpbm::Capsule<>{place, place + direction, 0.1 * size}});
     }
   }
   return {chain, capsules, obstacles, bytes.chance(128) ? 0.0 : bytes.spread(1e-4, 0.05), never_collide};
@@ -321,7 +321,7 @@ void run_any_scheme(Bytes& bytes, const Arm& arm, Space space) {
     w(i) = bytes.mostly(bytes.spread(0.1, 10.0));
     wild = wild || !(w(i) >= 0.1 && w(i) <= 10.0);
   }
-  // Equal weights make MVN of WMVN and, with alpha = 0, MAN of Balanced.
+  // With equal weights, WMVN is MVN and, with alpha = 0, Balanced is MAN.
   if ((which & 4) != 0) w.setOnes();
   // Drawn one by one: C++ does not say in which order a call's arguments are evaluated.
   const double alpha = (which & 8) != 0 ? 0.0 : bytes.mostly(bytes.fraction());

@@ -39,7 +39,7 @@ def the_package() -> str:
 
 
 def the_circle() -> str:
-    """The paper's, which ends as in the independent solution (tests/cpp/support/paper.hpp)."""
+    """The paper's circle ends in the posture of the independent solution (tests/cpp/support/paper.hpp)."""
     motion = fp.simulate(ARM, CIRCLE, SCHEME, Q0)
     off = np.abs(motion.q[-1] - [0.215222487, 0.396791734, 0.1144437012, 0.1756873322]).max()
     assert off < 1e-9, f"off by {off:.1e} rad"
@@ -47,7 +47,7 @@ def the_circle() -> str:
 
 
 def a_sweep() -> str:
-    """In lanes or not, the same motions as one by one."""
+    """A sweep, with or without lanes, has the same motions as single calls of simulate()."""
     starts = Q0 + np.linspace(-0.05, 0.05, 11)[:, None]
     sweep = fp.sweep(ARM, CIRCLE, SCHEME, starts, 0.01)
     alone = [fp.simulate(ARM, CIRCLE, SCHEME, start, dt=0.01) for start in starts]
@@ -58,7 +58,7 @@ def a_sweep() -> str:
 
 
 def every_lane() -> str:
-    """For each kind of processor that this one is of, and for none."""
+    """A sweep with each type of lanes that this processor has, and without lanes."""
     kinds = ["none", *fp._core.processor_kinds()]
     if sys.platform == "linux" and platform.machine() == "x86_64":
         excluded_pairs = [kind for kind in ("avx2", "avx512") if find_spec(f"fpbm_cpp._lanes_{kind}") is None]
@@ -73,7 +73,7 @@ def every_lane() -> str:
 
 
 def the_command() -> str:
-    """Without its extra it says in one line what to install."""
+    """The command runs, or prints in one line which extra to install."""
     command = str(Path(sysconfig.get_path("scripts")) / "fpbm-cpp")
     child = run(command, "--version")
     if find_spec("click") is None:

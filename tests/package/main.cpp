@@ -1,7 +1,7 @@
 #include <cstdio>
 #include <fpbm/fpbm.hpp>
 
-/// The paper's circle under its scheme; succeeds where the arm ends as in the independent solution.
+/// The paper's circle under its scheme; succeeds if the last posture equals the independent solution.
 int main() {
   constexpr double kPi = 3.14159265358979323846;
   const fpbm::PlanarArm<4> arm(fpbm::Vector<4>::Ones());

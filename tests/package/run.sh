@@ -1,6 +1,6 @@
 #!/bin/sh
-# Uses fpbm as others do: installed into a prefix of its own and found there by CMake and by pkg-config, as a subdirectory,
-# and fetched.
+# Uses fpbm as user projects do: installed into a separate prefix and found by CMake and by pkg-config, as a
+# subdirectory, and fetched.
 # usage: run.sh <source dir> <scratch dir> [generator] [C++ compiler]
 set -eu
 source_dir=$1
@@ -27,7 +27,7 @@ configure -S "$source_dir" -B "$scratch/fpbm" -DCMAKE_INSTALL_PREFIX="$scratch/p
 cmake --build "$scratch/fpbm" >/dev/null
 cmake --install "$scratch/fpbm" >/dev/null
 
-# Moved: nothing installed may remember where it was.
+# Moved: the installed files must not contain their first location.
 prefix=$scratch/elsewhere
 mv "$scratch/prefix" "$prefix"
 rm -rf "$scratch/fpbm"
@@ -41,14 +41,14 @@ flags=$(PKG_CONFIG_PATH="$prefix/share/pkgconfig" pkg-config --cflags fpbm)
 # shellcheck disable=SC2086 # Several words.
 "$compiler" -std=c++17 -fsyntax-only "$consumer/main.cpp" $flags
 
-# As a subdirectory, which brings the library alone: none of our tests, examples or flags.
+# As a subdirectory, which adds only the library, without our tests, examples or flags.
 configure -S "$consumer" -B "$scratch/subdirectory" -DFPBM_SOURCE_DIR="$source_dir"
 test ! -e "$scratch/subdirectory/fpbm/tests" || fail "add_subdirectory brought our tests along"
 test ! -e "$scratch/subdirectory/fpbm/examples" || fail "add_subdirectory brought our examples along"
 cmake --build "$scratch/subdirectory"
 "$scratch/subdirectory/consumer"
 
-# Fetched from a repository, and where the project says so, only if it is not installed.
+# Fetched from a repository; with FIND_PACKAGE_ARGS, only if fpbm is not installed.
 repository=$scratch/repository
 mkdir "$repository"
 cp -R "$source_dir/CMakeLists.txt" "$source_dir/cmake" "$source_dir/cpp" "$source_dir/examples" "$source_dir/tests" "$repository"
@@ -75,7 +75,7 @@ test ! -e "$scratch/already_installed/_deps/fpbm-src" || fail "FIND_PACKAGE_ARGS
 fetch overridden -DFPBM_FETCH="$from;OVERRIDE_FIND_PACKAGE" -DCMAKE_PREFIX_PATH="$prefix"
 test -e "$scratch/overridden/_deps/fpbm-src" || fail "OVERRIDE_FIND_PACKAGE took what is installed"
 
-# However it comes, only include paths and C++17.
+# In all cases, the project has only the include paths and C++17.
 for way in installed subdirectory fetched; do
   if grep -E '"command".* -[Wmf]' "$scratch/$way/compile_commands.json"; then
     fail "Flags of ours reach the project: $way"

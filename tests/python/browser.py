@@ -24,7 +24,7 @@ FLAGS = [
 
 @contextmanager
 def opened(folder, width, height):
-    """A page of this size, in a browser whose profile is in a folder; skips the test where there is no browser."""
+    """A page of this size, in a browser whose profile is in a folder. Skips the test if there is no browser."""
     chromium = shutil.which("chromium") or shutil.which("chromium-browser")
     if chromium is None:
         pytest.skip("chromium is not installed")

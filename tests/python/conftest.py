@@ -37,7 +37,7 @@ def q0() -> np.ndarray:
 
 @pytest.fixture(scope="session")
 def once(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Any]:
-    """once(make, *arguments) is make(*arguments), computed in one process of pytest-xdist for all."""
+    """once(make, *arguments) is make(*arguments), computed once for all processes of pytest-xdist."""
     folder = tmp_path_factory.getbasetemp()
     if "PYTEST_XDIST_WORKER" in os.environ:
         folder = folder.parent

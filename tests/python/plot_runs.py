@@ -66,7 +66,7 @@ def panels(figure: Figure) -> dict[str, Any]:
 
 
 def assert_tidy(figure: Figure) -> None:
-    """Text of 9 points or more that stands out, inside the figure, none on another."""
+    """Texts have 9 points or more and enough contrast, are inside the figure, and do not overlap."""
     background = luminance(figure.get_facecolor())
     boxes = []
     for text in drawn_texts(figure):

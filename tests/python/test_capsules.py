@@ -1,4 +1,4 @@
-"""Capsules from a URDF's collision geometry: they contain it, and are as small as they can be."""
+"""Capsules from a URDF's collision geometry: the capsules contain the geometry, and are as small as possible."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def on_line(points: Array, origin: Array, u: Array) -> float:
 
 
 def dense_search(points: Array, axes: int = 60, shifts: int = 9) -> float:
-    """The least volume over axes of many directions and places, the best of which are searched again more finely."""
+    """The least volume over axes of many directions and positions. The best axes are refined by a finer search."""
     rng = np.random.default_rng(0)
     middle, size = (points.min(axis=0) + points.max(axis=0)) / 2, np.ptp(points, axis=0).max()
     lines = [
@@ -386,7 +386,7 @@ def test_capsule_is_data() -> None:
         Capsule(-1, [0, 0, 0], [0, 0, 1], 0.1)
 
 
-# Robots of others
+# Robots of other packages
 
 
 def robots() -> Path | None:
@@ -397,7 +397,7 @@ def robots() -> Path | None:
 
 
 ROBOTS = robots()
-# File, tip, base, capsules a link: one where many meshes of many vertices take long.
+# File, tip, base, capsules per link: one if many meshes with many vertices need a long time.
 ARMS = {
     "panda": ("panda_description/urdf/panda.urdf", "panda_hand", None, 2),
     "panda capsules": ("panda_description/urdf/panda_collision.urdf", "panda_hand", None, 2),
@@ -435,14 +435,14 @@ def link_frames(arm: fp.SerialArm, q: Array) -> list[Array]:
 
 
 def samples(shape: object, rng: np.random.Generator) -> Array:
-    """Points of a body in Pinocchio, all vertices of a mesh among them."""
+    """Points of a body in Pinocchio, including all vertices of a mesh."""
     kind = type(shape).__name__
     if kind.startswith("BVH"):
         vertices = shape.vertices()
-        ways = rng.dirichlet([1, 1, 1], 3000)
+        weights = rng.dirichlet([1, 1, 1], 3000)
         faces = [shape.tri_indices(int(i)) for i in rng.integers(0, shape.num_tris, 3000)]
         corner = np.array([[vertices[face[k]] for k in range(3)] for face in faces])
-        return np.vstack([vertices, np.einsum("ij,ijk->ik", ways, corner)])
+        return np.vstack([vertices, np.einsum("ij,ijk->ik", weights, corner)])
     directions = rng.normal(size=(500, 3))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     if kind == "Box":
@@ -474,7 +474,7 @@ heavy = pytest.mark.skipif("FPBM_ALL_HOMES" not in os.environ, reason="takes min
     "name", [pytest.param(name, marks=heavy) if name in ("xarm7", "ur10") else name for name in ARMS]
 )
 def test_every_vertex_of_an_arm_is_inside_its_capsules(name: str, once) -> None:
-    """By our own reader exactly; by Pinocchio's, in random postures, also faces, as far as its readers are exact."""
+    """Vertices by our reader, exactly; vertices and faces by Pinocchio in random postures, up to single precision."""
     pin = pytest.importorskip("pinocchio")
     path, tip, base, most = ARMS[name]
     file = str(ROBOTS / path)
@@ -490,7 +490,7 @@ def test_every_vertex_of_an_arm_is_inside_its_capsules(name: str, once) -> None:
                 whole = shape.moved(frame)
                 assert outside(whole.points, of_link[n], whole.sizes) <= 0.0
             else:
-                assert outside(points, of_link[n]) <= 0.002 * shape.cylinder[0]  # The prism is round it.
+                assert outside(points, of_link[n]) <= 0.002 * shape.cylinder[0]  # The prism contains the cylinder.
 
     arm = fp.SerialArm(joints, end)
     model = pin.buildModelFromUrdf(file)

@@ -34,7 +34,7 @@ LINKS = tuple(fp.Capsule(i, [0, 0, 0], [length, 0, 0], 0.02 * i) for i, length i
 
 
 def turned(rng: np.random.Generator, extent: float) -> Array:
-    """A frame anywhere."""
+    """A random frame."""
     pose = np.eye(4)
     pose[:3, :3], pose[:3, 3] = fp.rotation(rng.normal(size=3)), rng.uniform(-extent, extent, 3)
     return pose
@@ -123,7 +123,7 @@ def test_the_nearest_pair_agrees_with_coal(arm: fp.Arm) -> None:
         for q in rng.uniform(-2.5, 2.5, (20, arm.dof)):
             nearest, distances = clearance.nearest(arm, q), coal.distances(q)
             assert nearest is not None
-            if nearest.distance > 1e-6:  # Of two that overlap, Coal's distance is less exact.
+            if nearest.distance > 1e-6:  # If shapes overlap, the distance by Coal is less exact.
                 apart += 1
                 worst = max(worst, abs(nearest.distance - distances.min()))
                 assert distances[coal.pairs.index(nearest.pair)] <= distances.min() + 1e-9
@@ -215,7 +215,7 @@ def test_a_reference_through_a_table_stops_at_the_margin(scheme: fp.Scheme, task
     assert run.status.code in (fp.Status.BLOCKED, fp.Status.STALLED)
     assert run.clearance.shape == run.t.shape
     assert run.clearance.min() >= CLEARANCE.margin - 1e-9
-    assert run.clearance.min() <= 2 * CLEARANCE.margin  # It came near.
+    assert run.clearance.min() <= 2 * CLEARANCE.margin  # The arm was near a shape.
     limits = run.limits
     assert np.all((limits.lower - 1e-9 <= run.q) & (run.q <= limits.upper + 1e-9))
     assert np.all(np.abs(run.qd) <= limits.velocity + 1e-9)
@@ -300,7 +300,7 @@ def test_an_obstacle_moves() -> None:
 
 
 def test_an_arm_avoids_an_obstacle_that_is_expected_to_continue() -> None:
-    """The same wall, told to come nearer, stops the arm farther away."""
+    """If the table is expected to approach, the arm stops farther away."""
 
     def final_distance(speed: float) -> float:
         tracker = fp.Tracker(PANDA, SCHEMES[1], READY, clearance=fp.Clearance(CAPSULES[5:], [TABLE]))

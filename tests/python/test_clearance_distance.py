@@ -1,9 +1,9 @@
-"""Distances and normals of capsules, half-spaces and boxes against Coal (Pan, Chitta and Manocha 2012), and exact ones.
+"""Distances and normals of capsules, half-spaces and boxes against Coal (Pan, Chitta, Manocha 2012) and exact results.
 
-Coal has closed forms for two capsules, which lose digits where these are short and near parallel, and for a capsule and
-a half-space. For a capsule and a box, Coal iterates (GJK, EPA) to a tolerance, and sometimes has no result if the two
-touch. So all pairs are compared with an enumeration of all features in extended precision, and with Coal those in which
-it agrees with that; how many these are is printed, and asserted.
+Coal has closed forms for two capsules, which lose digits if the capsules are short and nearly parallel, and for a
+capsule and a half-space. For a capsule and a box, Coal iterates (GJK, EPA) to a tolerance, and sometimes has no result
+if the two touch. Therefore, all pairs are compared with an enumeration of all features in extended precision. Pairs for
+which Coal agrees with this enumeration are also compared with Coal. Their number is printed and asserted.
 """
 
 from __future__ import annotations
@@ -170,7 +170,7 @@ def ratio(part: Exact, whole: Exact) -> Exact:
 
 
 def exact_segments(a: Exact, u: Exact, b: Exact, v: Exact) -> Exact:
-    """The difference of the nearest points: the least of each end to the other segment, and of the lines."""
+    """Difference of the nearest points: the shortest from an end to the other segment, or between both lines."""
     w = a - b
     c = np.cross(u, v)
     s = ratio(dot(np.cross(v, w), c), dot(c, c))
@@ -191,13 +191,13 @@ def exact_capsules(pairs: Array) -> tuple[Exact, Exact]:
 
 
 def exact_half_space(pairs: Array) -> tuple[Exact, Exact]:
-    """The same of capsules and half-spaces: of the lower end. The difference, at any length."""
+    """As exact_capsules(), for capsules and half-spaces: distance of the lower end. The difference has any length."""
     a, b, r, n, offset = np.split(pairs.astype(np.longdouble), [3, 6, 7, 10], axis=1)
     return (np.minimum(dot(n, a), dot(n, b)) - r - offset)[:, 0], 100 * n
 
 
 def exact_box(pairs: Array) -> tuple[Exact, Exact]:
-    """The same of capsules and boxes: the least over ends and edges, or the penetration depth by separating axes."""
+    """As exact_capsules(), for capsules and boxes: the minimum over ends and edges, or the penetration depth."""
     a, b, r, p, columns, half = np.split(pairs.astype(np.longdouble), [3, 6, 7, 10, 19], axis=1)
     R = columns.reshape(-1, 3, 3).transpose(0, 2, 1)
     a, u = (np.einsum("nij,ni->nj", R, x) for x in (a - p, b - a))
@@ -291,7 +291,7 @@ def test_distances_and_normals_are_exact_and_agree_with_coal(program: Path, kind
         f"from the others of Coal by {worst['coal']:.1e} m, {worst['coal normal']:.1e}"
     )
     assert worst["exact"] <= TOLERANCE
-    assert worst["gap"] <= TOLERANCE  # With the line above: no vector is better as a normal, near contact or in it.
+    assert worst["gap"] <= TOLERANCE  # With the line above: no other vector has a larger gap, also in contact.
     assert worst["normal"] <= TOLERANCE
     assert worst["coal"] <= 2 * TOLERANCE
     assert worst["coal normal"] <= 2 * TOLERANCE

@@ -1,4 +1,4 @@
-"""Robots as trees that keep clear of themselves, between all branches, and of obstacles."""
+"""Robots as trees that avoid self-collision, between all branches, and obstacles."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ def fitted_two_arms(folder: Path, **options: Any) -> tuple[fp.Robot, fp.Clearanc
 
 
 def across(one: str, other: str) -> bool:
-    """Whether two links are of two branches, or an arm's and the stand's."""
+    """Whether two links belong to two of these parts: left arm, right arm, torso, stand."""
     sides = {name.split("_")[0] for name in (one, other)}
     return len(sides) == 2 and sides <= {"left", "right", "stand", "torso"}
 
 
 def place(rng: np.random.Generator, side: str, robot: fp.Robot) -> tuple[str, Array]:
-    """Where a hand is driven: a frame and a point of it, on the other arm, the torso, the stand or the table."""
+    """Target of a hand: a frame and a point of this frame, on the other arm, the torso, the stand or the table."""
     other = {"left": "right", "right": "left"}[side]
     links = [name for name in robot.frames if name.startswith(other)]
     frame = str(rng.choice([str(rng.choice(links[3:])), "torso", "stand"], p=[0.6, 0.1, 0.3]))
@@ -142,7 +142,7 @@ def test_the_preset_combines_those_of_its_arms() -> None:
 
 
 def test_distances_of_two_arms_are_at_most_those_of_each_alone() -> None:
-    """Where the arms are far from one another, the nearest pair of one of them; seen by Coal when they are near."""
+    """If the arms are far apart, the nearest pair is within one arm."""
     rng = np.random.default_rng(2)
     far = {"right": shifted(0, -3, 0), "left": fp_turned(rng, [0, 3, 0.2])}
     robot, clearance = fp.Robot.from_arms(ARMS, far), fp.Clearance.from_arms(ARMS, BOTH, far)
@@ -229,7 +229,7 @@ def robot_file(folder: Path, base: str = "revolute") -> Path:
     ids=str,
 )
 def test_capsules_have_the_positions_of_their_links(options: dict[str, Any], tmp_path: Path) -> None:
-    """Each capsule contains its link's cylinder, seen from the frame of that link."""
+    """The axis of each capsule is the z axis of the frame of its link."""
     file = robot_file(tmp_path)
     robot, clearance = fp.Robot.from_urdf(file, **options), fp.Clearance.from_urdf(file, per_link=1, **options)
     assert len(clearance.capsules) == 10
@@ -262,7 +262,7 @@ def test_frames_of_the_gap_measurement_equal_those_of_the_robot(tmp_path: Path) 
 
 
 def test_srdf_of_a_robot(tmp_path: Path) -> None:
-    """Pairs by name, without pairs of unknown links; a state of all joints is a posture to be accepted in."""
+    """Pairs by name, without pairs of unknown links; the clearance must accept the posture of a state of all joints."""
     file, srdf = robot_file(tmp_path), tmp_path / "robot.srdf"
     file.write_text(re.sub("<cylinder[^>]*>", '<sphere radius="0.04"/>', file.read_text()))  # Fitted faster.
     robot = fp.Robot.from_urdf(file, base="planar")

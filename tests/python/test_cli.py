@@ -109,7 +109,7 @@ def test_missing_extra(module: str, requirement: str, tmp_path: Path) -> None:
 def test_ctrl_c(tmp_path: Path) -> None:
     out = tmp_path / "out"
 
-    def restore_interrupts() -> None:  # A shell lets its background jobs ignore them.
+    def restore_interrupts() -> None:  # Background jobs of a shell ignore SIGINT.
         signal.signal(signal.SIGINT, signal.SIG_DFL)
 
     start = [*MODULE, "reproduce", "--out", str(out)]

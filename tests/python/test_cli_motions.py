@@ -514,7 +514,7 @@ def test_sweep_reports_motions_that_stop() -> None:
 def interrupted(arguments: list[str], after: str, seconds: float) -> tuple[str, str, int]:
     """Later output, errors and exit code of a call that gets Ctrl-C after it prints this text and the delay is over."""
 
-    def restore_interrupts() -> None:  # A shell lets its background jobs ignore them.
+    def restore_interrupts() -> None:  # Background jobs of a shell ignore SIGINT.
         signal.signal(signal.SIGINT, signal.SIG_DFL)
 
     program = (
@@ -698,7 +698,7 @@ def test_servo_and_view_accept_jobs_of_stacks(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_servo_accepts_a_stack_of_a_job() -> None:
-    """To the page itself, which the job suits."""
+    """The command accepts the job, and fails later, when it opens the port."""
     pytest.importorskip("viser")
     Path("stack.toml").write_text(STACK)
     with socket.create_server(("127.0.0.1", 0)) as server:

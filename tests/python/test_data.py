@@ -1,4 +1,4 @@
-"""Arms, paths and schemes are data: read, compared and replaced; a pickle, a table and repr() bring the same back."""
+"""Arms, paths and schemes are data: read, compared and replaced; pickle, tables and repr() give equal objects."""
 
 import copy
 import dataclasses

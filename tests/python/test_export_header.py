@@ -79,7 +79,7 @@ def coupling(joints: Sequence[Joint]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def bounds_of_drives(joints: Sequence[Joint]) -> np.ndarray:
-    """Lower, upper, velocity, acceleration and jerk of the drives, within which every joint keeps its own."""
+    """Lower, upper, velocity, acceleration and jerk of the drives: the bounds of all joints hold within them."""
     A, b = coupling(joints)
     rows = []
     for column in A.T:

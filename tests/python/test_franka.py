@@ -41,9 +41,9 @@ def joint_limits(element: str, attribute: str) -> np.ndarray:
 
 
 def derivative(t: np.ndarray, q: np.ndarray, order: int) -> np.ndarray:
-    """By divided differences: where no time is left out, the finite differences that libfranka takes.
+    """Divided differences: without lost cycles, equal to the finite differences in libfranka.
 
-    Over times left out they are means of those, so that the bounds also hold for them.
+    Across lost cycles, each divided difference is a mean of finite differences. Therefore, the same bounds hold.
     """
     for k in range(1, order + 1):
         q = k * np.diff(q, axis=0) / (t[k:] - t[:-k])[:, None]
@@ -51,7 +51,7 @@ def derivative(t: np.ndarray, q: np.ndarray, order: int) -> np.ndarray:
 
 
 def violated_conditions(t: np.ndarray, q: np.ndarray) -> set[str]:
-    """Which conditions commands q [rad] at times t [s] break.
+    """The conditions that commands q [rad] at times t [s] violate.
 
     Velocity: libfranka 0.21, joint_velocity_limits.h, with the position-based limits of the robot's URDF, at the
     position commanded before. The other conditions: limitRate() in src/rate_limiting.cpp, whose clamps are conditions
@@ -79,7 +79,7 @@ def violated_conditions(t: np.ndarray, q: np.ndarray) -> set[str]:
 
 
 def from_rest_to_rest(ticks: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Times [s] and positions, with three at rest before and after."""
+    """Times [s] and positions, with three samples at rest before and after."""
     before, after = np.arange(-3, 0), ticks[-1] + np.arange(1, 4)
     return 1e-3 * np.r_[before, ticks, after], np.r_[[q[0]] * 3, q, [q[-1]] * 3]
 
@@ -124,7 +124,7 @@ def test_libfranka_rejects_no_command(motion):
     shares = motion.shares()
     assert max(shares.values()) <= ROUNDING
     assert shares["velocity"] > 0.1  # The arm moved.
-    assert shares["jerk"] < 0.2  # Which the bare targets would not keep.
+    assert shares["jerk"] < 0.2  # Unfiltered targets would exceed the bound.
 
 
 def test_a_tick_is_the_robots_millisecond(motion):
@@ -168,7 +168,7 @@ def test_faults_are_detected(motion, fault, conditions):
 
 @pytest.mark.parametrize(("distance", "conditions"), [(0.30, set()), (0.20, {"velocity", "approach"})])
 def test_the_velocity_bound_decreases_near_the_end_of_the_range(motion, distance, conditions):
-    """At 0.9 rad/s, which joint 2 may be so far from its end as (0.9 + 0.25)^2 / 5.17 rad = 0.256 rad."""
+    """Joint 2 may have 0.9 rad/s up to (0.9 + 0.25)^2 / 5.17 rad = 0.256 rad before the end of its range."""
     q = np.tile(motion.q[0], (50, 1))
     t = 1e-3 * np.arange(50)
     q[:, 1] = joint_limits("limit", "upper")[1] - distance + 0.9 * (t - t[-1])
@@ -186,10 +186,10 @@ def test_lost_cycles_do_not_hide_a_fault(motion):
 
 
 def test_the_robot_received_the_recorded_commands(motion):
-    """It tells each command in the state after, as a float."""
+    """The next state from the robot contains each command, as a float."""
     sent_commands = {tuple(np.float32(q).tolist()) for q in commands(motion)[1]}
     unknown = [desired for desired in motion.desired if tuple(desired) not in sent_commands]
-    assert all(desired == motion.desired[0] for desired in unknown)  # It held its first position until it got some.
+    assert all(desired == motion.desired[0] for desired in unknown)  # Before the first command.
     assert len(unknown) < len(sent_commands) / 2
 
 
@@ -207,7 +207,7 @@ def test_targets_are_delayed_reordered_and_lost():
     stamps = np.array([target.stamp for target in targets])
     assert 0.6 < len(targets) / (30 * STREAM) < 0.9
     assert (np.diff([target.comes for target in targets]) >= 0).all()
-    assert (np.diff(stamps) < 0).any()  # One overtakes another.
+    assert (np.diff(stamps) < 0).any()  # Some targets arrive in another order.
     assert np.diff(stamps).max() > 0.35
 
 
@@ -238,6 +238,6 @@ def test_ctrl_c_stops_within_bounds(monkeypatch):
 
 
 def test_a_robot_without_response_raises():
-    """And no endless wait: the simulator ends in the motion, if not before."""
+    """The wait is not endless: the simulator ends during the motion or earlier."""
     with pytest.raises(RuntimeError), example.simulator(lifetime=3) as address:
         example.move(franka.Robot(address, franka.RealtimeConfig.kIgnore))

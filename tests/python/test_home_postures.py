@@ -38,7 +38,7 @@ def some(names: Iterable[str]) -> list[object]:
 PI = np.pi
 FRANKA = [[0, -PI / 4, 0, -3 * PI / 4, 0, PI / 2, PI / 4], [0, -0.3, 0, -2.2, 0, 2, 0.785]]
 UR = [[0] * 6, [0, -PI / 2, 0, -PI / 2, 0, 0], [0, -PI / 2, PI / 2, -PI / 2, -PI / 2, 0]]
-# All joints at zero, where a file's own home is that; and those that makers and planners start from.
+# All joints at zero, if this is the home posture of the file, and start postures of manufacturers and planners.
 HOMES = {
     "panda": FRANKA,
     "fr3": FRANKA,
@@ -249,7 +249,7 @@ def test_the_message_names_both_remedies() -> None:
 
 
 def test_a_face_that_is_cut_twice_is_covered() -> None:
-    """A plane's cut through a face is an edge that the next plane cuts: the corner there is in each quarter."""
+    """Two planes cut a face into quarters. Each quarter contains the corner where both cuts intersect."""
     a, b, c = np.array([[0.0, 0, 0], [4, 0, 0], [0, 4, 0]])
     whole = Shape(np.array([[a, b], [b, c], [c, a]]))
     ex, ey = np.eye(3)[:2]
@@ -295,7 +295,7 @@ def test_hull_distances_are_lower_bounds() -> None:
 
 
 def test_gaps_are_measured_against_the_margin() -> None:
-    """Capsules of 15 mm about balls of 5 mm whose middles are 60 mm apart: 30 mm apart, the balls 50 mm."""
+    """Balls of radius 5 mm, in capsules of radius 15 mm, with centres 60 mm apart: gaps of 50 mm and 30 mm."""
 
     def link(number: int) -> Link:
         shape = Shape(centers=np.zeros((1, 3)), radii=np.array([0.005]))

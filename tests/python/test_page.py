@@ -48,7 +48,7 @@ def schemes(n, damping):
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory):
-    """The page, by file://, with its clock stopped; nothing may complain."""
+    """The page, by file://, with its clock stopped. The browser must report no errors."""
     errors = []
     with opened(tmp_path_factory.mktemp("browser"), 1280, 800) as page:
         page.on("console", lambda message: errors.append(message.text))
@@ -216,7 +216,7 @@ def test_keys_move_the_target(page):
 
 
 def test_the_target_stays_visible(page):
-    """Dragged out of the window, and where a miss would turn the view of an arm in the plane."""
+    """A target that is dragged out of the window stays visible. A drag beside the target does not rotate the view."""
     begin(page, 0)
     page.evaluate("fpbm.show.restart()")
     box = page.locator("#arm").bounding_box()
@@ -285,7 +285,7 @@ def test_on_a_phone(page):
         browser.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": fingers})
 
     x, y = page.evaluate("fpbm.onPage(fpbm.show.goal)")
-    touch("touchStart", (x + 30, y + 30))  # Beside it, as fingers are.
+    touch("touchStart", (x + 30, y + 30))  # Beside the target: fingers are inaccurate.
     for k in range(1, 21):
         touch("touchMove", (x + 30 - 4 * k, y + 30 + k))
         run(page, 0.05)

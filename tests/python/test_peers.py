@@ -1,4 +1,4 @@
-"""Serial arms against Pinocchio and Orocos KDL, presets against URDFs of other origin: each where it is installed."""
+"""Serial arms against Pinocchio and Orocos KDL, presets against other URDFs; skipped without a peer."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Link(NamedTuple):
 
 
 class Robot(NamedTuple):
-    """An arm, and its model for the peers: the links, or a URDF and its tip where they read that themselves."""
+    """An arm, and its model for the peers: the links, or a URDF and its tip for peers that read URDF files."""
 
     arm: fp.SerialArm
     links: list[Link]
@@ -130,7 +130,7 @@ def pinocchio(robot: Robot) -> Kinematics:
 
 @functools.cache
 def import_kdl():
-    """PyKDL; Debian's by its file, since its folder has packages that are not for this environment."""
+    """PyKDL. Debian's PyKDL is imported from its file, because its folder has packages for another environment."""
     spec = importlib.util.find_spec("PyKDL")
     if spec is None:
         file = Path("/usr/lib/python3/dist-packages", "PyKDL" + sysconfig.get_config_var("EXT_SUFFIX"))
@@ -174,7 +174,7 @@ def kdl(robot: Robot) -> Kinematics:
         return np.array([[jacobian[row, column] for column in range(n)] for row in range(6)])
 
     def kinematics(q: Array, qd: Array) -> tuple[Array, Array, Array]:
-        assert chain.getNrOfJoints() == n  # And keep the chain, which the solvers only refer to.
+        assert chain.getNrOfJoints() == n  # Keeps the chain alive: the solvers only refer to it.
         end, jacobian, jacobian_dot = orocos.Frame(), orocos.Jacobian(n), orocos.Jacobian(n)
         assert to_tip.JntToCart(joints(q), end) == 0
         assert to_jacobian.JntToJac(joints(q), jacobian) == 0
@@ -231,7 +231,7 @@ def states(links: list[Link], count: int, seed: int = 1) -> Iterator[tuple[Array
 
 
 def deviation(robot: Robot, peer: Kinematics, count: int) -> float:
-    """The largest, relative to entries beyond 1."""
+    """Largest deviation, relative to entries above 1."""
     worst = 0.0
     for q, qd in states(robot.links, count):
         ours = robot.arm.kinematics(q, qd, task="pose")
@@ -278,8 +278,8 @@ def test_a_position_is_the_linear_rows_of_a_pose(name):
             np.testing.assert_allclose(a, b, rtol=0, atol=1e-14)
 
 
-# URDFs in the PyPI package ManipulaPy, which come from others still. They are as exact as their digits of π: the first
-# two have twelve or more, Kinova's own has 3.1416, ur_description 1.570796327.
+# URDFs in the PyPI package ManipulaPy, from several sources. Their accuracy is the accuracy of π in the file: the first
+# two files have twelve digits or more, the file of Kinova has 3.1416, and ur_description has 1.570796327.
 OTHERS = {
     "panda": ("franka_panda/panda.urdf", "panda_link8", 1e-10),
     "iiwa14": ("kuka_iiwa/iiwa14/iiwa14.urdf", "iiwa_link_ee_kuka", 1e-10),
@@ -307,7 +307,7 @@ def test_presets_agree_with_manipulapy(name):
         np.testing.assert_allclose(preset.forward(q), other.forward(q), rtol=0, atol=tolerance)
         np.testing.assert_allclose(preset.jacobian(q, task="pose"), other.jacobian(q, task="pose"), atol=tolerance)
 
-    # No range exceeds the other; Kinova's URDF is wider than its guide, and UR's halves the elbow for planners.
+    # The preset's ranges are within the URDF's: Kinova's URDF has wider ranges, and UR's has half the elbow's range.
     limits = [limit for joint in ElementTree.parse(path).findall("joint") if (limit := joint.find("limit")) is not None]
     lower = [float(limit.get("lower", -np.inf)) for limit in limits[: preset.dof]]
     upper = [float(limit.get("upper", np.inf)) for limit in limits[: preset.dof]]

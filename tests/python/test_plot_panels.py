@@ -58,9 +58,9 @@ def test_bounds_are_drawn_near_a_joint() -> None:
     run = a_run_within_limits()
     limits = run.options["limits"]
     (near,) = bounds(drawn(run, "positions"))
-    assert near == (limits.lower[0], LIGHT.lines[0])  # In the joint's colour; all others are far.
+    assert near == (limits.lower[0], LIGHT.lines[0])  # In the joint's colour. The other bounds are far away.
     assert {abs(value) for value, _ in bounds(drawn(run, "velocities"))} == {limits.velocity[0]}
-    assert bounds(drawn(run, "accelerations")) == []  # They are infinite.
+    assert bounds(drawn(run, "accelerations")) == []  # The bounds are infinite.
 
 
 def test_common_bounds_of_joints_have_the_ink_colour() -> None:

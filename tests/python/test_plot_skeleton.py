@@ -1,4 +1,4 @@
-"""Points and axes that an arm is drawn by."""
+"""Points and axes with which an arm is drawn."""
 
 from __future__ import annotations
 

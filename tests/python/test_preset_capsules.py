@@ -33,7 +33,7 @@ NUMBER = r"(-?\d+\.\d{4})"
 POINT = rf"\{{{NUMBER}, {NUMBER}, {NUMBER}\}}"
 CAPSULE = re.compile(rf'\{{(\d), \{{{POINT}, {POINT}, {NUMBER}\}}, "(\w+)"\}},')
 ROUNDED = 0.0003  # [m], of ends and radius.
-# ROS-Industrial set two joints of the iiwa by 0.44 mm from their places in KUKA's drawing.
+# In ROS-Industrial's model, two joints of the iiwa are 0.44 mm from their positions in KUKA's drawing.
 SLACK = {"iiwa14": 0.0012}
 
 
@@ -159,7 +159,7 @@ def test_listed_links_never_collide(name: str) -> None:
         assert high == low + 2
         joints = joints[low:high]
         step, axis = joints[1].placement, np.asarray(joints[1].axis)
-        # A point's distance from the second axis; and at most how far it is from the first one's origin.
+        # Bounds on the distance of a point from the first axis and from the second axis.
         levers = np.array(
             [
                 np.linalg.norm(step[:3, 3]) + np.max(np.linalg.norm(points, axis=1)),

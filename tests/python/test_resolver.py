@@ -318,7 +318,7 @@ def test_the_singular_state_of_many_is_named(arm, q0):
 
 
 def test_custom_kinematics_are_resolved(q0):
-    """Planar, in space or a pose: by the shape of the tip, and the task where that does not tell."""
+    """The shape of the tip determines the type of the task. If the shape is ambiguous, the argument `task` does."""
     J = np.random.default_rng(1).uniform(-1, 1, (3, 4))
     qd = np.ones(4)
     position = fp.Kinematics([0.0, 0.0, 3.0], J, 0 * J)

@@ -1,4 +1,4 @@
-"""Runs in files: they come back as they were, can be made again, and a file that is none is refused."""
+"""Runs in files: loaded runs equal the saved runs and can be repeated, and other files are rejected."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ LIMITS = fp.JointLimits(lower=[-3] * 4, upper=[3] * 4, velocity=[0.1, np.inf, 0.
 
 
 def through_file(run, tmp_path, **parts):
-    """A run of other parts, saved and loaded."""
+    """A run with replaced members, saved and loaded."""
     replace(run, **parts).save(tmp_path / "parts.npz")
     return fp.load(tmp_path / "parts.npz")
 

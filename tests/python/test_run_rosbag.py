@@ -1,4 +1,4 @@
-"""Runs as ROS 2 bags, read back by the library that ROS has nothing to do with."""
+"""Runs as ROS 2 bags, read by a library that is independent of ROS."""
 
 from __future__ import annotations
 

@@ -68,7 +68,7 @@ def read(file):
 
 
 def expect_columns(columns, run):
-    """That columns hold all of a run, each in its place."""
+    """Asserts that the columns contain all numbers of a run."""
     joints, flat = run.arm.joint_names, isinstance(run.arm, fp.PlanarArm)
     expected = {"t": run.t}
     for name in ("q", "qd", "qdd"):

@@ -73,7 +73,7 @@ def test_every_scale_is_the_largest(draw):
             assert (found.u >= lower).all()
             assert (found.u <= upper).all()
             assert found.scale[k] == whole.scale[k]
-            if J.any():  # No level after it disturbs it.
+            if J.any():  # Lower levels do not disturb this level.
                 assert np.linalg.norm(J @ (whole.u - found.u)) <= 1e-10 * np.linalg.norm(J)
             Z = null_space(above * unit, n)
             A = J * unit @ Z
@@ -105,8 +105,8 @@ def test_every_scale_is_the_largest(draw):
 def test_problems_of_sns_ik_are_solved():
     """A task that is feasible with a known scale, and a posture below it, as in sns_ik's basic_with_secondary_goal.
 
-    There the scale s is that of the acceleration xdd alone, in J u + drift = s xdd: s is one more joint, from 0 to 1,
-    and the second level raises it.
+    In sns_ik, the scale s applies to the acceleration xdd only: J u + drift = s xdd. Here, s is an additional joint
+    from 0 to 1, and the second level maximises s.
     """
     rng = np.random.default_rng(4)
     error = 0.0

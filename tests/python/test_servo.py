@@ -152,7 +152,7 @@ def test_the_arm_avoids_a_dragged_obstacle():
     around = [fp.Capsule(0, [2.2, 0.3, -1], [2.2, 0.3, 1], 0.1, "post"), fp.HalfSpace([0, 1, 0], -2, name="wall")]
     with a_servo(clearance=fp.Clearance(links, around)) as servo:
         wait_until(lambda: servo.tick is not None)
-        ((place, grip),) = servo._scene._grips  # Not the wall's.
+        ((place, grip),) = servo._scene._grips  # The wall has no handle.
         np.testing.assert_allclose(place, [2.2, 0.3, 0])
         servo.target = [2.2, 0.0]
         wait_until(lambda: "Drag the handle around the nearest shape." in readout(servo))
@@ -217,7 +217,7 @@ def test_each_task_of_a_frame_has_a_handle(stacked):
     for name in ("upright", "turn"):
         np.testing.assert_allclose(handles[name].position, tip, atol=1e-3)
     assert handles["elbow"].position[2] == stacked.target["elbow"][2]
-    np.testing.assert_allclose(handles["elbow"].position[:2], elbow[:2], atol=1e-3)  # It has no target there.
+    np.testing.assert_allclose(handles["elbow"].position[:2], elbow[:2], atol=1e-3)  # No target in x and y.
     lines = stacked._scene._gap.points
     assert len(lines) == 2 + 1 + 1 + 6
     np.testing.assert_allclose(lines[3], [elbow, [*elbow[:2], stacked.target["elbow"][2]]], atol=1e-3)

@@ -45,7 +45,7 @@ def test_a_target_moves_its_own_task():
     ticks = play(loop, clock, 6)
     np.testing.assert_allclose(loop.tip["place"], goal, atol=1e-5)
     assert largest(ticks, "upright") < 1e-5
-    assert largest(ticks, "place") > 1e-3  # Its filter is behind no limit of the joints.
+    assert largest(ticks, "place") > 1e-3  # The filter does not know the joint limits.
     np.testing.assert_array_equal(loop.target["place"], goal)
     for name in ("upright", "elbow", "posture"):
         np.testing.assert_array_equal(loop.target[name], start[name])
@@ -55,7 +55,7 @@ def test_a_target_moves_its_own_task():
     np.testing.assert_allclose(loop.tip["elbow"][2], higher[2], atol=1e-4)
     assert largest(ticks[-5000:], "place") < 1e-4
     tilted = fp.rotation([0.2, -0.1, 0.0]) @ start["upright"]
-    loop.push(3 * tilted, "upright")  # Its length does not matter.
+    loop.push(3 * tilted, "upright")  # The length of the axis does not matter.
     ticks += play(loop, clock, 6)
     np.testing.assert_allclose(loop.tip["upright"], tilted, atol=1e-5)
     np.testing.assert_allclose(loop.tip["place"], goal, atol=1e-4)
@@ -120,7 +120,7 @@ def test_the_strip_has_the_scale_of_each_level():
 
 
 def test_each_task_starts_at_its_own_target():
-    """Also after a restart, at which handles are where they were at first."""
+    """Also after a restart, which resets the handles."""
     away = moved(PANDA.forward(READY)[:3, 3], [0.0, 0.15, 0.0])
     loop, clock = a_loop(fp.Stack(fp.PositionTask(x=away, name="place"), fp.PostureTask(OTHER, k1=4, k2=4)))
     for _ in range(2):

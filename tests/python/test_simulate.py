@@ -51,7 +51,7 @@ def test_steps_equal_those_of_numpy(n):
 
 @pytest.mark.parametrize(("scheme", "dt"), [(fp.MAN(), 5e-3), (fp.FPBM(0.6, [1, 2, 3, 4], 1, 1), 2e-2)])
 def test_a_step_that_is_too_long_is_reported(arm, scheme, dt):
-    """Past a nearly singular posture. The error in the end is the integration's alone."""
+    """The motion passes a nearly singular posture. The final error is an integration error only."""
     path, q0 = fp.Circle(1.05, 1.0), [0.3, 0.6, 0.6, 0.6]
     run = fp.simulate(arm, path, scheme, q0, dt=dt)
     assert run.status.code is fp.Status.COARSE
@@ -217,7 +217,7 @@ def test_a_position_task_leaves_the_orientation_free():
 
 
 def test_fixed_and_run_time_sizes_agree():
-    """A joint that does nothing but make the chain longer than any fixed size changes no other."""
+    """Two joints at rest, which make the chain longer than any fixed size, do not change the other joints."""
     still = fp.Joint("prismatic", axis=[1, 0, 0])
     longer = fp.SerialArm.from_joints([still, still, *PANDA.joints], PANDA.tip)
     path = fp.Line([0.1, 0.1, -0.1], 1.0)

@@ -153,7 +153,7 @@ def test_keeps_every_bound_and_stops(name, level):
 
 
 def test_a_slow_approach_does_not_keep_lower_tasks_moving():
-    """A first level that settles by its integral: the second, which cannot be reached, would oscillate for 40 s."""
+    """While the first level settles by its integral, a second level with an unreachable target comes to rest."""
     arm = fp.PlanarArm([0.4, 0.3, 0.3, 0.2])
     stack = fp.Stack(
         fp.PositionTask("joint_3", rows=("x", "y"), name="elbow"),
@@ -172,7 +172,7 @@ def test_a_slow_approach_does_not_keep_lower_tasks_moving():
 @pytest.mark.parametrize("name", ["panda", "gen3"])
 @pytest.mark.parametrize("k1", [10, 40])
 def test_a_lower_level_does_not_disturb_a_higher_one(name, k1):
-    """A lower level meets its limits, beside one that holds its target, and beside none, whose ticks are RK4's."""
+    """The first level moves equally if the lower level meets limits, holds its target, or is missing (ticks by RK4)."""
     arm = fp.SerialArm.preset(name)
     q0 = {"panda": READY, "gen3": [0.0, 0.3, 0.0, 1.6, 0.0, 1.2, 0.0]}[name]
     scheme = fp.Balanced(0.6, [1, 2, 3, 4, 3, 2, 1], null_damping=2)
@@ -355,7 +355,7 @@ def test_gains_are_checked(panda, balanced):
 
 @pytest.mark.parametrize("level", ["velocity", "acceleration"])
 def test_the_largest_gains_that_are_accepted_damp_errors(panda, level):
-    """The tip stands still while its level's own gain is the largest, and a lower level meets its limits."""
+    """With the largest gain on its level, the tip stays at rest while a lower level meets its limits."""
     largest = (1.0 if level == "velocity" else 2.785) / DT
     scheme = fp.WMVN(np.ones(7)) if level == "velocity" else fp.Balanced(0.6, np.ones(7), null_damping=2)
     last = []
@@ -461,7 +461,7 @@ def test_invalid_orders_have_no_effect(panda, balanced):
 
 @pytest.mark.parametrize("level", ["velocity", "acceleration"])
 def test_an_arm_continues_after_a_wall(panda, level):
-    """A wall for the elbow blocks the place, which comes back and is reached; the cup stays upright."""
+    """A wall for the elbow blocks the position task. Later, its target is reachable again. The cup stays upright."""
     scheme = fp.WMVN(np.ones(7)) if level == "velocity" else fp.Balanced(0.6, np.ones(7), null_damping=2)
     stack = fp.Stack(fp.AxisTask(x=[0, 0, -1], name="upright"), fp.PositionTask(name="place"), fp.PostureTask(READY))
     wall = fp.TaskBounds(fp.PositionTask("panda_joint4", rows=("y",)), upper=0.02)

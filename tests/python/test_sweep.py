@@ -55,7 +55,7 @@ CASES = {
 
 
 def narrow(arm, velocity):
-    """Limits of that velocity, and ten times it for the acceleration."""
+    """Limits with this velocity bound, and with acceleration bounds ten times as large."""
     return fp.JointLimits(
         lower=[-3.5] * arm.dof,
         upper=[4.0] * arm.dof,
@@ -215,7 +215,7 @@ def test_executors_change_nothing(arm, reference):
         same(large(arm, executor=threads), reference)
     with ProcessPoolExecutor(2) as processes:
         same(large(arm, executor=processes), reference)
-        same(large(arm, executor=processes), reference)  # It stays open.
+        same(large(arm, executor=processes), reference)  # The executor stays open.
 
 
 def test_dask_changes_nothing(arm, reference):
@@ -406,7 +406,7 @@ def test_interruption_keeps_finished_motions(arm):
         if done > 100:
             raise KeyboardInterrupt
 
-    dt = 0.001  # Long enough that none finishes all meanwhile.
+    dt = 0.001  # The motions take so long that the sweep does not complete before the interruption.
     reference = large(arm, dt, workers=1)
     for how in ({"workers": 2}, {"workers": 1}):
         with pytest.raises(fp.SweepInterrupted, match=r"interrupted after \d+ of 600 motions") as caught:
@@ -436,7 +436,7 @@ class Interrupting(ThreadPoolExecutor):
 
 @pytest.mark.usefixtures("ctrl_c")
 def test_ctrl_c_leaves_no_lock_acquired(arm):
-    """It ends the sweep after the submission, and not within, where it might hold a lock of the executor's."""
+    """Ctrl-C ends the sweep after the submission: during the submission, the executor may hold a lock."""
     with Interrupting(2) as threads:
         with pytest.raises(fp.SweepInterrupted):
             large(arm, executor=threads)

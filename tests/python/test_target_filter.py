@@ -45,7 +45,7 @@ def shortest(ruckig, x, xd, xdd, target, bounds):
 
 
 def arrivals(x, xd, xdd, target):
-    """The tick from which each column rests on the target; the last digit is the coordinates'."""
+    """The tick from which each column is at rest on the target, up to the last digit of the coordinates."""
     away = (np.abs(x - target) > 4e-16) | (xd != 0) | (xdd != 0)
     assert not away[-1].any()
     return np.where(away.any(axis=0), len(away) - np.argmax(away[::-1], axis=0), 0)
@@ -53,7 +53,7 @@ def arrivals(x, xd, xdd, target):
 
 @pytest.mark.parametrize("seed", range(10))
 def test_duration_exceeds_ruckig_s_by_at_most_one_tick(seed):
-    """1,000 targets a seed: one half from rest, and never beyond them; the other from the midst of another motion."""
+    """1,000 targets per seed: one half from rest, without overshoot, and the other half during another motion."""
     ruckig = pytest.importorskip("ruckig", reason="Ruckig (PyPI: ruckig) is not installed")
     rng = np.random.default_rng(seed)
     late = []
@@ -90,7 +90,7 @@ def test_duration_exceeds_ruckig_s_by_at_most_one_tick(seed):
 
 @pytest.mark.parametrize("learnt", [False, True])
 def test_does_not_lag_behind_a_stream(learnt):
-    """30 Hz, each target up to 20 ms late, one in ten lost; then none, and it rests."""
+    """Targets at 30 Hz, up to 20 ms late, one in ten lost. After the last target, the filter comes to rest."""
     rng = np.random.default_rng(7)
     stamps = np.arange(0, 5, 1 / 30)
     delays = rng.uniform(0, 0.02, stamps.size)

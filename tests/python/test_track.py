@@ -49,7 +49,7 @@ def test_without_limits_track_equals_simulate(case):
     for name in ("t", "q", "qd", "x", "x_ref", "error"):
         assert getattr(here, name).shape == getattr(there, name).shape
     np.testing.assert_array_equal(here.t, there.t)
-    # At velocity level a state's velocity is that of the tick before.
+    # At velocity level, the velocity of a state is the velocity of the previous tick.
     tolerance = 1e-9 if scheme.level == "acceleration" else 1e-3 * np.abs(there.qdd).max()
     np.testing.assert_allclose(here.q, there.q, atol=1e-9)
     np.testing.assert_allclose(here.qd, there.qd, atol=tolerance)
@@ -149,7 +149,7 @@ def test_options_reproduce_the_run(q0):
 def test_defaults_equal_those_of_the_tracker(function):
     defaults = dict(re.findall(r"(\w+): [^,]*? = ([\d.]+)", fp.Tracker.__init__.__doc__))
     own = {name: parameter.default for name, parameter in signature(function).parameters.items()}
-    del defaults["measured_delay"]  # Neither resolves measured states.
+    del defaults["measured_delay"]  # Neither function resolves measured states.
     assert {
         "dt",
         "error_bound",

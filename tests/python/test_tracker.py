@@ -35,7 +35,7 @@ def is_viable(limits, q, qd):
 
 
 def box(limits, q, qd):
-    """The accelerations of each joint that lead to a viable state, by bisection from one that does."""
+    """The accelerations of each joint that lead to a viable state, by bisection from a viable acceleration."""
     stop = np.clip(-qd / DT, -limits.acceleration, limits.acceleration)
     ends = []
     for far in (-limits.acceleration, limits.acceleration):
@@ -75,7 +75,7 @@ def narrow_limits():
 
 @pytest.mark.parametrize("case", ["panda pose", "panda position", "planar position"])
 def test_saturation_finds_the_task_feasible_when_a_solver_does(case, panda):
-    """Where some qdd keeps the box and the whole task, the tracker's does, to round-off; the solver is HiGHS."""
+    """If HiGHS finds a qdd in the box for the whole task, the tracker finds a solution, up to round-off."""
     optimize = pytest.importorskip("scipy.optimize")
     rng = np.random.default_rng(3)
     task = case.split()[-1]

@@ -1,4 +1,4 @@
-"""Tuning: never worse than the baseline, equal to the last bit with every executor, and true in its reports."""
+"""Tuning: never worse than the baseline, equal to the last bit with every executor, and with correct reports."""
 
 import subprocess
 import sys
@@ -408,7 +408,7 @@ def test_a_converged_search_restarts_at_another_point():
 
 
 def test_a_search_finds_a_concave_front():
-    """Fonseca and Fleming's: of this front, sums of the two find the ends alone."""
+    """The problem of Fonseca and Fleming: weighted sums of both objectives find only the ends of this front."""
     seeking, scored = search.front(2, 0), []
     points = next(seeking)
     for _ in range(20):

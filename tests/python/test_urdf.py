@@ -106,7 +106,7 @@ def write(tmp_path: Path) -> Callable[[str | bytes], Path]:
 
 
 def error_message(file: Path, tip: str = "tip", base: str | None = None) -> str:
-    """The message about a file, which must be one line, soon, and name the file."""
+    """The error message for a file: one line with the name of the file, within 4 s."""
     start = time.process_time()
     with pytest.raises(ValueError, match=r".") as caught:
         read_urdf(file, tip, base)

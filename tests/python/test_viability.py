@@ -54,7 +54,7 @@ def our_bounds(states: Array, folder: Path) -> Array:
 
 
 def their_bounds(states: Array, tick: float) -> Array:
-    """Lower and upper acceleration, a column each, for as many joints as TSID's robot has, at its own tick."""
+    """Lower and upper acceleration by TSID, a column each, for a robot with one joint for each state."""
     model = pin.Model()
     parent = 0
     for i in range(len(states)):

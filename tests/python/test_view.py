@@ -138,7 +138,7 @@ def test_the_clearance_is_drawn_and_reported():
         viewer._chart._quantity.value = label
         viewer._chart.show(viewer._playback)
         np.testing.assert_allclose(viewer._chart._plot.data[1], run.clearance[viewer._playback.frames], atol=1e-9)
-        viewer._controls._limited.value = False  # Then it hits the post, and the page says so.
+        viewer._controls._limited.value = False  # Then, the arm hits the post, and the page reports the contact.
         viewer._on_change()
         assert viewer.run.clearance is None
         assert viewer._playback.distances.min() < 0
@@ -146,7 +146,7 @@ def test_the_clearance_is_drawn_and_reported():
 
 
 def a_stack_run(move=fp.simulate, **how):
-    """The Panda's elbow on a line, its tip's pose below."""
+    """The Panda's wrist on a line, with the pose of the tip on a lower level."""
     stack = fp.Stack(
         fp.PositionTask("panda_joint5", name="wrist"), fp.PoseTask(name="hand"), fp.PostureTask(name="home")
     )

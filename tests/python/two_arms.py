@@ -94,7 +94,7 @@ class Bodies:
         self.bodies[name] = body, middle, float(np.linalg.norm(mesh.vertices - middle, axis=1).max())
 
     def nearest(self, q: Array, enough: float) -> tuple[float, tuple[str, str] | None]:
-        """The least distance of a pair in a posture [m], where one is below `enough`; not positive in contact."""
+        """The least distance of all pairs in a posture [m], if it is below `enough`; not positive in contact."""
         at = {name: self.boxes[name] if name in self.boxes else self.robot.forward(q, name) for name in self.bodies}
         middles = np.array([at[k][:3, :3] @ middle + at[k][:3, 3] for k, (_, middle, _) in self.bodies.items()])
         radii = np.array([radius for _, _, radius in self.bodies.values()])

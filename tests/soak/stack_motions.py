@@ -137,7 +137,7 @@ def excess(limits: fp.JointLimits, q: Array, qd: Array) -> list[float]:
 
 
 def motion(seed: int) -> tuple[list[float], float, bool]:
-    """Excess over the bounds, the speed that stop() leaves, and whether the stack has several levels."""
+    """Excess over the bounds, the speed after stop(), and whether the stack has several levels."""
     rng = np.random.default_rng(seed)
     begun = start(rng)
     tracker, levels = begun.tracker, len(begun.stack.levels)

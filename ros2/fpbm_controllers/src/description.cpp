@@ -66,7 +66,7 @@ namespace {
                                    [&](const auto& other) { return other.joint.name == joint.mimic->joint_name; });
   if (leader == tree.joints.end()) {
     throw std::invalid_argument(
-        "joint '" + joint.name + "': it follows joint '" + joint.mimic->joint_name +
+        "joint '" + joint.name + "': follows joint '" + joint.mimic->joint_name +
         "', which must also be between base_frame and a frame: give another base_frame or frame");
   }
   return {static_cast<int>(leader - tree.joints.begin()), joint.mimic->multiplier, joint.mimic->offset};
@@ -78,8 +78,7 @@ fpbm::Tree<> tree_of(const std::string& robot_description, const std::string& ba
                      const std::vector<NamedLink>& links) {
   urdf::Model model;
   if (robot_description.empty() || !model.initString(robot_description)) {
-    throw std::invalid_argument(
-        "robot_description: the controller manager has none, or it is not a URDF: publish the robot's URDF");
+    throw std::invalid_argument("robot_description: is missing, or is not a URDF: publish the robot's URDF");
   }
   const auto to_base = joints_to(model, {"base_frame", base});
   fpbm::Tree<> tree;

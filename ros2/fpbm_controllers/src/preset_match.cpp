@@ -63,8 +63,9 @@ void require_match(const fpbm::Chain<>& described, const std::string& tip, const
   for (std::size_t j = 0; j < count; ++j) {
     const auto& joint = described.joints[j];
     if (joint.mimic.joint >= 0) {
-      throw std::invalid_argument("arm: joint '" + joint.name + "' follows another in robot_description, and not in " +
-                                  name + ": give the preset of the robot, or none and limits.acceleration");
+      throw std::invalid_argument("arm: joint '" + joint.name +
+                                  "' follows another joint in robot_description, but not in " + name +
+                                  ": give the preset of the robot, or none and limits.acceleration");
     }
     for (std::size_t i = 0; i < j; ++i) {
       const std::string other = " of its axis from the axis of joint '" + described.joints[i].name + "'";

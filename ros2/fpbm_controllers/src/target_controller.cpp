@@ -96,8 +96,8 @@ CallbackReturn TargetController::on_activate(const rclcpp_lifecycle::State&) {
   return CallbackReturn::SUCCESS;
 }
 
-/// The last command of all joints. If there is no command, or if the arm does not follow the command, the measured
-/// positions. A start from the measured positions makes the command jump by the lag and the steady-state error of the
+/// Returns the last command of all joints, or the measured positions if there is no command or the arm does not follow
+/// the command. A start from the measured positions makes the command jump by the lag and the steady-state error of the
 /// arm.
 TargetController::Joints TargetController::start() {
   const auto require = [&](bool good, std::size_t joint, const char* what) {
@@ -142,8 +142,8 @@ CallbackReturn TargetController::on_deactivate(const rclcpp_lifecycle::State&) {
   return CallbackReturn::SUCCESS;
 }
 
-/// At most one tick per call, always with the length for which the limits were made: a late call delays the arm, and
-/// the arm is never faster.
+/// Executes at most one tick per call. Each tick has the length for which the limits were made: late calls delay the
+/// arm.
 ///
 /// An interface that another thread has locked is not an error: after an error, the controller manager would deactivate
 /// the controller in motion. The arm waits until all joints have taken a command. If the wait is too long, the motion

@@ -50,7 +50,7 @@ const bool AllocationWatch::kSeesMalloc = true;
 
 }  // namespace fpbm::test
 
-// The C family: in glibc, a program can define its own functions. The originals keep these names.
+// malloc and its family: with glibc, a program can define its own functions. The functions of glibc keep these names.
 #ifndef FPBM_TEST_SANITIZED
 extern "C" {
 void* __libc_malloc(std::size_t size);
@@ -94,7 +94,7 @@ int posix_memalign(void** out, std::size_t alignment, std::size_t size) noexcept
 
 namespace {
 
-/// Implements all forms of new. It bypasses the watch on malloc, so that each watch counts only its own allocations.
+/// Implements all forms of new. Bypasses the watch on malloc, so that each watch counts only its own allocations.
 void* allocate(std::size_t size, std::size_t alignment) noexcept {
   fpbm::test::counted.by_new += fpbm::test::watching ? 1 : 0;
 #ifdef FPBM_TEST_SANITIZED

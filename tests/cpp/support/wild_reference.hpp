@@ -12,8 +12,9 @@ template <typename Space>
 [[nodiscard]] Reference<Space> wild_reference(Random& random, const typename Space::template Point<double>& tip) {
   constexpr int M = Space::kRows;
   const double size = std::pow(10.0, random.uniform(-2.0, 1.5));
-  const Vector<M> way = random.uniform(M, -size, size);
-  return {Space::template displace<double>(tip, way), random.uniform(M, -size, size), random.uniform(M, -size, size)};
+  const Vector<M> displacement = random.uniform(M, -size, size);
+  return {Space::template displace<double>(tip, displacement), random.uniform(M, -size, size),
+          random.uniform(M, -size, size)};
 }
 
 }  // namespace fpbm::test

@@ -4,8 +4,8 @@
 
 namespace fpbm_controllers {
 
-/// Decides which calls of a loop are ticks of a fixed length. A call is not a tick if the ticks would be ahead of the
-/// clock of the loop by more than one tick. If calls are late, the ticks are late, but never faster than the clock.
+/// Decides which calls of a loop are ticks of a fixed length. A call is not a tick if the previous ticks are ahead of
+/// the clock of the loop by one tick or more. If calls are late, the ticks do not catch up.
 class Pace {
  public:
   /// dt: length of a tick [s].
