@@ -1,4 +1,4 @@
-// Written by fpbm-cpp export-header from 04_exported_arm.urdf, tip tool. Do not edit: write it again.
+// Written by fpbm-cpp export-header from 04_exported_arm.urdf, tip tool. Do not edit.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // Written by fpbm-cpp export-header from g1_29dof_rev_1_0.urdf, base fixed, tips left_wrist_yaw_link,
-// right_wrist_yaw_link. Do not edit: write it again.
+// right_wrist_yaw_link. Do not edit.
 #pragma once
 
 #include <array>

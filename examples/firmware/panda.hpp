@@ -1,4 +1,4 @@
-// Written by fpbm-cpp export-header from preset panda. Do not edit: write it again.
+// Written by fpbm-cpp export-header from preset panda. Do not edit.
 #pragma once
 
 #include <array>

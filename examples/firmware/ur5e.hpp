@@ -1,4 +1,4 @@
-// Written by fpbm-cpp export-header from preset ur5e. Do not edit: write it again.
+// Written by fpbm-cpp export-header from preset ur5e. Do not edit.
 #pragma once
 
 #include <array>

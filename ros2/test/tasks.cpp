@@ -79,7 +79,7 @@ void tasks() {
   neither.refused("neither tip_frame nor tasks", "tip_frame: is empty, and there are no tasks");
   Given low;
   low.own.task.tasks_map["left"].level = 2;
-  low.refused("no task on level 1", "tasks: none has level 1");
+  low.refused("no task on level 1", "tasks: no task has level 1");
   Given().add("left hand", "left_flange", 2).refused("a name with a space", "tasks: 'left hand' is not a name");
   Given swapped;
   swapped.both().add("right", "right_flange");

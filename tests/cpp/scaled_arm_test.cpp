@@ -47,7 +47,7 @@ template <typename Space, typename MakeArm>
 void expect_the_same_at_every_size(MakeArm&& make_arm, const Vector<Eigen::Dynamic>& q0) {
   const auto check = [&](const auto& scheme) {
     const Course plain = run<Space>(make_arm(1.0), scheme, q0, 1.0);
-    for (const double factor : {0.0625, 0.25, 16.0, 1024.0}) {  // Powers of two: the same digits.
+    for (const double factor : {0.0625, 0.25, 16.0, 1024.0}) {  // Powers of two do not change the digits.
       const Course scaled = run<Space>(make_arm(factor), scheme, q0, factor);
       EXPECT_EQ(scaled.statuses, plain.statuses) << factor;
       EXPECT_NEAR(scaled.error, plain.error, 1e-9 * (1.0 + plain.error)) << factor;

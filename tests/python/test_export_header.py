@@ -367,7 +367,7 @@ def test_invalid_namespace_is_rejected(name: str) -> None:
 def test_source_is_escaped_in_its_comment() -> None:
     text = export_header([Joint()], np.eye(4), name="n", source="a\nb\r\u2028\u202ec\\ é")
     assert text.startswith(
-        "// Written by fpbm-cpp export-header from a?b???c\\ é. Do not edit: write it again.\n#pragma"
+        "// Written by fpbm-cpp export-header from a?b???c\\ é. Do not edit.\n#pragma"
     )
 
 

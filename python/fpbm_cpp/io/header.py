@@ -129,7 +129,7 @@ def _begin(joints: Sequence[Joint], name: str, source: str, includes: Sequence[s
     width = max(map(len, drives), default=0)
     names = "\n".join(f"    {literal + ',':{width + 1}}  // q({i})" for i, literal in enumerate(drives))
     origin = f" from {''.join(c if c.isprintable() else '?' for c in source)}" if source else ""
-    said = f"// Written by fpbm-cpp export-header{origin}. Do not edit: write it again."
+    said = f"// Written by fpbm-cpp export-header{origin}. Do not edit."
     return f"""\
 {textwrap.fill(said, 120, subsequent_indent="// ", break_long_words=False, break_on_hyphens=False)}
 #pragma once

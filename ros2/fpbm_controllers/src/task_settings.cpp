@@ -70,7 +70,7 @@ std::vector<TaskSettings> task_settings(const target_controller::Params& params)
                 std::to_string(kPerLevel) +
                 " tasks before this one, the largest number: put the task on another level");
   }
-  require(counts[0] > 0, "tasks: none has level 1: set the level of at least one task to 1, the highest priority");
+  require(counts[0] > 0, "tasks: no task has level 1: set the level of at least one task to 1, the highest priority");
   return tasks;
 }
 

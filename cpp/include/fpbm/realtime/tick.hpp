@@ -74,11 +74,11 @@ struct TrackerOptions {
   Scalar null_damping = Scalar(2);
   /// Whether a stalled arm may move to a remembered posture from which the target is reachable (Recovery).
   bool recovery = true;
-  /// Whether the first level has priority over speed. The lower levels leave the first level a reserve of the limits:
-  /// 0.7 of each bound on acceleration and 0.35 of each bound on velocity. stop() keeps the first level: its references
-  /// are held at rest, and the joints stop in its null space. This takes longer than a stop of each joint by itself. A
-  /// task that is farther than 0.001 characteristic lengths, or 0.001 rad, from its reference stays at its current
-  /// point. No effect on resolve_measured(), and on a tracker of a single level.
+  /// Whether limits and stops preserve the first of several levels. A part of the limits is reserved for the first
+  /// level: 0.7 of each bound on acceleration and 0.35 of each bound on velocity. stop() keeps the first level: its
+  /// references are held at rest, and the joints stop in its null space. This stop takes longer than a stop of each
+  /// joint by itself. A task that is farther than 0.001 characteristic lengths, or 0.001 rad, from its reference stays
+  /// at its current point. No effect on resolve_measured(), and on a tracker of a single level.
   bool keep_first_level = false;
   /// Largest age of the states that are passed to resolve_measured() [ticks]: the time from the measurement to the
   /// start of the tick in which the robot realises the command. Most robots need one to three ticks. 0: exact and

@@ -127,8 +127,8 @@ class TaskWatch {
   [[nodiscard]] const Mask<Scalar>& accurate() const noexcept { return accurate_; }
 
  private:
-  /// Largest step of a joint that resolves the motion [rad], or [m] for a prismatic joint. Its truncation error in
-  /// ErrorWatch is 4.9e-5 of the lever arm, half of kAccuracy.
+  /// Largest step of a joint that resolves the motion [rad], or [m] for a prismatic joint. The truncation error of this
+  /// step in ErrorWatch is 4.9e-5 of the lever arm, half of kAccuracy.
   static constexpr auto kLargestStep = static_cast<Number<Scalar>>(0.25);
 
   /// Largest lag of a damped tip, in steps of the reference: 1 for a tip that stops, and the tolerance of ErrorWatch.
