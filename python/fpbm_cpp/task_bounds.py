@@ -24,7 +24,7 @@ class TaskBounds(Data):
     AxisTask, lower and upper are the least and the largest angle between the axis and the task's x: a cone about x.
 
     lower and upper hold at every tick: a tick is executed only if the robot can stop within these bounds from the end
-    of the tick. velocity and acceleration hold as far as the joint limits and the other bounds admit.
+    of the tick. velocity and deceleration hold as far as the joint limits and the other bounds admit.
 
     Raises ParameterError if the task has another type, a bound is out of range, or lower is not below upper.
     """
