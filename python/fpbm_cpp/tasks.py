@@ -95,7 +95,7 @@ class RowsTask(FrameTask):
 
 @data
 class PositionTask(RowsTask):
-    """The position of a frame's origin, or some of its coordinates. Point x: shape (3,) [m]."""
+    """The position of a frame's origin, or some of its coordinates. Point: shape (3,) [m]."""
 
     kind = "position"
     all_rows = POSITION
@@ -103,7 +103,7 @@ class PositionTask(RowsTask):
 
 @data
 class OrientationTask(RowsTask):
-    """The orientation of a frame, or some of its rotations. Point x: shape (3, 3)."""
+    """The orientation of a frame, or some of its rotations. Point: shape (3, 3)."""
 
     kind = "orientation"
     all_rows = ROTATION
@@ -112,7 +112,7 @@ class OrientationTask(RowsTask):
 
 @data
 class PoseTask(RowsTask):
-    """The pose of a frame, or some of its rows. Point x: shape (4, 4) [m].
+    """The pose of a frame, or some of its rows. Point: shape (4, 4) [m].
 
     With axes='frame', rows=('x', 'y', 'z', 'rx', 'ry') leave the rotation about the frame's z axis free.
     """
@@ -124,7 +124,7 @@ class PoseTask(RowsTask):
 
 @data
 class RelativePoseTask(PoseTask):
-    """The pose of a frame in another frame of the robot, as in a grasp with two hands. Point x: shape (4, 4) [m].
+    """The pose of a frame in another frame of the robot, as in a grasp with two hands. Point: shape (4, 4) [m].
 
     With reference_frame=, a PositionTask, OrientationTask or AxisTask is also relative to that frame.
     """
@@ -140,7 +140,7 @@ class RelativePoseTask(PoseTask):
 
 @data
 class CenterOfMassTask(Task):
-    """The position of the robot's centre of mass, or some of its coordinates. Point x: shape (3,) [m]."""
+    """The position of the robot's centre of mass, or some of its coordinates. Point: shape (3,) [m]."""
 
     kind = "center_of_mass"
     _: KW_ONLY
@@ -154,7 +154,7 @@ class CenterOfMassTask(Task):
 
 @data
 class AxisTask(FrameTask):
-    """Direction of an axis of a frame: 2 rows. The rotation about the axis is free. Point x: shape (3,)."""
+    """Direction of an axis of a frame: 2 rows. The rotation about the axis is free. Point: shape (3,)."""
 
     kind = "axis"
     axis: ArrayField = parameter("Axis in the frame; its length is ignored.", default=(0, 0, 1), shape="(3,)")
@@ -167,7 +167,7 @@ class AxisTask(FrameTask):
 
 @data
 class PostureTask(Task):
-    """Positions of all joints or of some joints. Point x: shape (joints,) [rad]."""
+    """Positions of all joints or of some joints. Point: shape (joints,) [rad]."""
 
     kind = "posture"
     q: OptionalArrayField = parameter(TARGET, default=None, shape="(n,)", unit="rad")
