@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import textwrap
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -99,7 +100,7 @@ def comparison(
     """
     if rows is None:
         names = (name.split("/") for name in results.rows)
-        rows = list(dict.fromkeys("/".join(parts[1:-1]) for parts in names if parts[0] == part))
+        rows = list(dict.fromkeys("/".join(parts[1:-1]) for parts in names if parts[0] == part and len(parts) > 1))
     present = [library for library in libraries if any(f"{part}/{row}/{library}" in results.rows for row in rows)]
 
     def cell(row: str, library: str) -> str:
@@ -132,12 +133,12 @@ def summary(results: Results) -> list[str]:
     machine, built_with = results.values["machine"], results.values["built_with"]
     versions = {**built_with, **results.values.get("packages", {})}
     others = ", ".join(f"{name} {v}" for name, v in versions.items() if v and name not in ("compiler", "flags"))
-    lines += [
+    run = (
         f"{machine['processor']}, {machine['cores']} cores, {machine['system']}; {built_with['compiler']} "
         f"`{built_with['flags']}`; Python {machine['python']}; {others}. "
-        f"Load average at the start: {machine['load']}.",
-        "",
-    ]
+        f"Load average at the start: {machine['load']}."
+    )
+    lines += [*textwrap.wrap(run, 120, break_on_hyphens=False), ""]
     if results.values["missing"]:
         lines += [f"Missing here: {', '.join(results.values['missing'])}.", ""]
     return lines
@@ -394,7 +395,7 @@ def chart(results: Results, file: Path) -> None:
         label = row["name"].replace("/", " ")
         tail.plot(columns, [row[c] / 1e3 for c in columns], color=colour, marker=marker, label=label)
     tail.set_yscale("log")
-    tail.set(ylabel="time of a call [µs]", title="Tails in a warm loop, each result read before the next call")
+    tail.set(ylabel="time of a call [µs]", title="Latency of a call in a warm loop")
     tail.legend(fontsize=8)
 
     for kind, label, colour, marker in (
