@@ -236,15 +236,15 @@ def main() -> None:
 
 #include "fpbm/clearance/clearance.hpp"
 
-/// Capsules on the links of the presets [m]. They contain the collision meshes of the manufacturers in every posture,
-/// but no cables, tools or other mounted parts. Written by tools/preset_capsules.py.
+/// Capsules on the links of the presets [m]. The capsules contain the collision meshes of the manufacturers in every
+/// posture, but no cables, tools or other mounted parts. Written by tools/preset_capsules.py.
 namespace fpbm::presets::capsules {{
 
 {functions}
 }}  // namespace fpbm::presets::capsules
 
 /// Links of the presets whose capsules may overlap although the links never collide within the joint bounds, for the
-/// last argument of Clearance. These links are always at least 5 mm apart.
+/// last argument of Clearance. The two links of a pair are always at least 5 mm apart.
 namespace fpbm::presets::never_collide {{
 
 using LinkNames = std::pair<std::string, std::string>;

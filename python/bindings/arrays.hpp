@@ -71,8 +71,8 @@ class OutArray : public py::object {
 };
 using OptionalOut = std::optional<OutArray>;
 
-/// The array for a result of this shape: `out`, or a new array. Throws std::invalid_argument if `out` is not an
-/// array of that shape that can be written without a conversion.
+/// The array for a result of the given shape: `out`, or a new array. Throws std::invalid_argument if `out` is not an
+/// array of the given shape that can be written without a conversion.
 inline Array result_array(const OptionalOut& out, const std::vector<py::ssize_t>& shape) {
   if (!out) return Array(shape);
   if (py::isinstance<py::array_t<double, py::array::c_style>>(*out)) {

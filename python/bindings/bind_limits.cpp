@@ -108,8 +108,8 @@ void bind_limits(py::module_& m) {
                         R"(Keeps joint limits in your own control loop, for any Jacobian.
 
 A motion is unchanged if it keeps every bound over the next tick, and the joints can then stop within the bounds.
-Otherwise, other joints replace joints on their bounds in the null space of J. If this is not sufficient, the task is
-scaled without a change of direction.
+Otherwise, other joints replace joints on their bounds in the null space of J. If null-space motion is not sufficient,
+the task is scaled without a change of direction.
 
 Parameters
 ----------

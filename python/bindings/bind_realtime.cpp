@@ -66,7 +66,7 @@ Space space_of(const AnyTracker<Space>&) {
   return {};
 }
 
-/// The result of take() for a tracker in a posture, with the nearest pair there.
+/// The result of take() for a tracker in a posture, with the nearest pair in the posture.
 template <typename Tracker, typename Take>
 PyTick tick_at(Tracker& tracker, const JointVector& q, Take&& take) {
   const std::optional<PyNearest> nearest = nearest_at(tracker.clearance(), q);
@@ -289,7 +289,7 @@ unreachable, the arm stops.
 
 tick integrates the tracker's own state by RK4; the result is the command for an arm with position or velocity control.
 resolve_measured computes the acceleration for a torque controller from a measured state.
-Never pass a measured state to tick. The limits hold for schemes of both levels.
+Never pass a measured state to tick. The limits hold at velocity level and at acceleration level.
 
 Parameters
 ----------
@@ -316,7 +316,7 @@ integral_gain, integral_bound : float
     integral [arm lengths and radians per s^2, or per s]. A gain below k1 k2 is stable.
 stall_time : float
     If an arm is slowed, or farther than error_bound from its target, and makes no progress for this time [s], the arm
-    stops until the target moves, or until resume(). math.inf: the arm never stops for this reason.
+    stops until the target moves, or until resume(). math.inf: a lack of progress never stops the arm.
 singular_radius, singular_brake : float
     Damping near singular postures, if the scheme has none; 0: no damping.
 null_damping : float

@@ -145,7 +145,7 @@ v has shape (m,), linear rows first, along the base frame's axes. Returns whethe
                              "Acceleration of the reference, shape (m,) [m/s^2, rad/s^2].")
       .def(
           "advance", [](PyTargetFilter& self) { std::visit([](auto& filter) { filter.advance(); }, self.any); },
-          "Advances by one tick; Tracker.tick calls this itself.")
+          "Advances by one tick; Tracker.tick calls advance.")
       .def(
           "reset",
           [](PyTargetFilter& self, const ArrayLike& x) {

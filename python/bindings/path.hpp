@@ -15,8 +15,8 @@ struct Path {
     return std::visit([](const auto& path) { return path.duration(); }, any);
   }
 
-  /// The path for a task in that space, as convert_path() makes it.
-  /// Throws std::invalid_argument if the task cannot follow the path.
+  /// The path for a task in Space, as convert_path() makes it. Throws std::invalid_argument if the task cannot follow
+  /// the path.
   template <typename Space>
   [[nodiscard]] AnyPath<Space> as() const;
 };

@@ -11,7 +11,7 @@ namespace fpbm::bindings {
 /// J and b of a task J u = b.
 using LevelRows = std::pair<Matrix<kDynamic, kDynamic>, JointVector>;
 
-/// A motion of several levels, and the scale of each.
+/// A motion of several levels, and the scale of each level.
 struct Levels {
   JointVector u;
   std::vector<double> scale;

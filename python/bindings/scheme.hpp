@@ -64,7 +64,7 @@ struct Scheme {
   /// Whether an objective reads the arm or its limits.
   [[nodiscard]] bool needs_arm() const noexcept { return !is_plain() || joint_centring != 0.0; }
 
-  /// The scheme without objectives that wrap the law, for joints with these limits. Compiled once, in scheme.cpp.
+  /// The scheme without objectives that wrap the law, for joints with the given limits. Compiled once, in scheme.cpp.
   template <typename Space>
   [[nodiscard]] EitherScheme<Space> plain(const JointLimits<kDynamic>& limits) const;
 
@@ -88,7 +88,7 @@ struct Scheme {
     return DiagonalWeights<N>(Vector<N>(*w));
   }
 
-  /// The secondary motion z of joints with these limits.
+  /// The secondary motion z of joints with the given limits.
   template <int N>
   [[nodiscard]] NullSpace<N> null_space(const JointLimits<N>& limits) const {
     const Eigen::Index dof = limits.lower.size();

@@ -27,7 +27,7 @@ class StackMotion {
               const TrackerOptions<>& options, const JointLimits<kDynamic>& limits, const JointVector& qdd0,
               const Clearance<kDynamic>& clearance);
 
-  /// Sets the targets of these tasks; all other tasks keep their last target, at rest.
+  /// Sets the targets of the given tasks; all other tasks keep their last target, at rest.
   void aim(const Targets& targets) noexcept;
   /// One tick: a task with a source follows the source; all other tasks follow their targets. The clocks of the sources
   /// advance.
@@ -36,7 +36,7 @@ class StackMotion {
   [[nodiscard]] Result resolve_measured(const State<kDynamic>& measured, const Sources& sources);
 
   /// The new level k is the old level order[k], with its targets. Returns false, without an effect, if Stack::reorder()
-  /// does.
+  /// returns false.
   bool reorder(const std::array<int, AnyStack::kLevels>& order) noexcept;
 
   void stop() noexcept;

@@ -99,8 +99,8 @@ class Followers {
   std::vector<std::variant<AnyFollower<Position<3>>, AnyFollower<Pose>>> each_;
 };
 
-/// fpbm::track() of a stack. Tip, reference and error of a sample are those of the task that follows the first path. J
-/// of a sample, for summaries, is the Jacobian of the arm's tip.
+/// fpbm::track() of a stack. Tip, reference and error of a sample belong to the task that follows the first path. J of
+/// a sample, for summaries, is the Jacobian of the arm's tip.
 template <typename Space>
 RolloutResult<kDynamic> track_stack(const Motion<Space>& motion, const LimitOptions& limit_options,
                                     const Output<Space>& output) {

@@ -368,8 +368,8 @@ class Limiter:
     Keeps joint limits in your own control loop, for any Jacobian.
 
     A motion is unchanged if it keeps every bound over the next tick, and the joints can then stop within the bounds.
-    Otherwise, other joints replace joints on their bounds in the null space of J. If this is not sufficient, the task is
-    scaled without a change of direction.
+    Otherwise, other joints replace joints on their bounds in the null space of J. If null-space motion is not sufficient,
+    the task is scaled without a change of direction.
 
     Parameters
     ----------
@@ -483,7 +483,7 @@ class TargetFilter:
     ) -> None: ...
     def advance(self) -> None:
         """
-        Advances by one tick; Tracker.tick calls this itself.
+        Advances by one tick; Tracker.tick calls advance.
         """
     def push(self, x: numpy.typing.ArrayLike, stamp: typing.SupportsFloat | typing.SupportsIndex | None = None) -> bool:
         """
@@ -611,7 +611,7 @@ class Tracker:
 
     tick integrates the tracker's own state by RK4; the result is the command for an arm with position or velocity control.
     resolve_measured computes the acceleration for a torque controller from a measured state.
-    Never pass a measured state to tick. The limits hold for schemes of both levels.
+    Never pass a measured state to tick. The limits hold at velocity level and at acceleration level.
 
     Parameters
     ----------
@@ -638,7 +638,7 @@ class Tracker:
         integral [arm lengths and radians per s^2, or per s]. A gain below k1 k2 is stable.
     stall_time : float
         If an arm is slowed, or farther than error_bound from its target, and makes no progress for this time [s], the arm
-        stops until the target moves, or until resume(). math.inf: the arm never stops for this reason.
+        stops until the target moves, or until resume(). math.inf: a lack of progress never stops the arm.
     singular_radius, singular_brake : float
         Damping near singular postures, if the scheme has none; 0: no damping.
     null_damping : float

@@ -35,8 +35,8 @@ class AnyWeights {
     return held([](const auto& weights) { return weights.template inverse_bound<Scalar>(); });
   }
 
-  // Not inlined, so that the large functions that call these functions stay small. Templates, so that only the
-  // functions that a program calls are compiled.
+  // Not inlined, so that the large callers stay small. Templates, so that only the functions that a program calls are
+  // compiled.
   template <typename = void>
   [[nodiscard, gnu::noinline]] Vector<Eigen::Dynamic> root(const Vector<Eigen::Dynamic>& a) const noexcept {
     return held([&](const auto& weights) -> Vector<Eigen::Dynamic> { return weights.root(a); });

@@ -17,15 +17,15 @@
 /// every translation unit with this header would need 4 s more.
 namespace fpbm {
 
-/// Planar arm with these link lengths [m].
-/// Throws ParameterError unless there are 2 to kMaxDof lengths, all positive and finite.
+/// Planar arm with the given link lengths [m]. Throws ParameterError unless there are 2 to kMaxDof lengths, all
+/// positive and finite.
 template <typename = void>
 [[nodiscard]] AnyArm<Position<2>> make_planar_arm(const Vector<Eigen::Dynamic>& lengths) {
   return AnyArm<Position<2>>(PlanarArm<Eigen::Dynamic>(lengths));
 }
 
-/// Arm of this chain: a CoupledArm if joints mimic others, else a SerialArm. Throws ParameterError under the conditions
-/// of these types.
+/// Arm of a chain: a CoupledArm if joints mimic other joints, else a SerialArm. Throws ParameterError under the
+/// conditions of CoupledArm and SerialArm.
 template <typename = void>
 [[nodiscard]] AnyArm<Position<3>> make_arm(const Chain<>& chain) {
   using Any = AnyArm<Position<3>>;

@@ -37,7 +37,7 @@ struct DisplacementBound {
   void add(const Clearance& clearance, const typename Clearance::Body& body, JointBits joints,
            const JointDisplacement<Clearance>& displacement) noexcept {
     Scalar line(0);       // Σ |p_j| of the revolute joints before joint k.
-    Scalar deviation(0);  // Σ e_j of the same joints.
+    Scalar deviation(0);  // Σ e_j of the revolute joints before joint k.
     each_joint(joints, [&](Eigen::Index k) noexcept {
       const Scalar lever = body.levers(k);
       const Scalar v = std::abs(displacement.line(k));

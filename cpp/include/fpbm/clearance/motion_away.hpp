@@ -10,7 +10,7 @@ namespace fpbm {
 ///
 ///   Σ gain (1 − s/range)² ∇s   over all pairs with a gap s < range beyond the margin.
 ///
-/// This is the negative gradient of the potential gain·range/3 Σ (1 − s/range)³. The sum contains both ends of a
+/// The motion is the negative gradient of the potential gain·range/3 Σ (1 − s/range)³. The sum contains both ends of a
 /// capsule, so that the motion is continuous if the nearest points jump from one end to the other. placed: the bodies
 /// of the clearance.
 template <typename Clearance>

@@ -115,7 +115,7 @@ class NearPairs {
   Placement here_;
   std::vector<Scalar> lower_bound_;            ///< Lower bound on the distance of each pair [m].
   std::vector<Nearest<Scalar>> nearest_;       ///< Nearest points of each pair with is_known_.
-  std::vector<unsigned char> is_known_;        ///< Whether nearest_ is computed for this posture.
+  std::vector<unsigned char> is_known_;        ///< Whether nearest_ is computed for the present posture.
   std::vector<Scalar> displacement_;           ///< Displacement bound of each body [m].
   std::vector<Scalar> obstacle_displacement_;  ///< Displacement of each obstacle [m].
   std::vector<std::size_t> obstacle_moves_;    ///< Obstacle::moves at the last set_posture().

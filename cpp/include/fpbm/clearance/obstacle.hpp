@@ -52,7 +52,7 @@ struct Obstacle {
     } else {
       const auto* wall = std::get_if<HalfSpace<Scalar>>(&shape);
       const Scalar length = wall->normal.norm();
-      constexpr Scalar kTolerance = Scalar(1e-4);  // Distances have this relative error: 0.1 mm at 1 m.
+      constexpr Scalar kTolerance = Scalar(1e-4);  // Relative error of distances: 0.1 mm at 1 m.
       if (!(std::abs(length - Scalar(1)) < kTolerance)) {
         validation::fail(argument + ".normal's length", length, "1");
       }

@@ -61,8 +61,8 @@ class PairRows {
                               motion.stop.deviation;
     const AllJoints x = p.cwiseAbs() + motion.stop.deviation;
     near.set_displacements(clearance, fastest + x.sum() * x + h / Scalar(2) * motion.speed.cwiseAbs(), time);
-    // The rows are evaluated in the middle of the tick, like J of the task. At the start of the tick, they would differ
-    // by h/2 d(∇s)/dt.
+    // The rows are evaluated in the middle of the tick, like J of the task. At the start of the tick, the rows would
+    // differ by h/2 d(∇s)/dt.
     const JointVector middle = state.q + h / Scalar(2) * state.qd;
     bool is_placed = false;
     bounds_.begin();
@@ -194,8 +194,8 @@ class PairRows {
     return std::min(shortest_stop, std::sqrt(a * (a * h * h + Scalar(2) * row.gap - last)) - a * h);
   }
 
-  /// Whether a pair is a bound of a task with a finite deceleration. The stop at this deceleration may need more
-  /// distance than the shortest stop.
+  /// Whether a pair is a bound of a task with a finite deceleration. A stop at the deceleration of the bound may need
+  /// more distance than the shortest stop.
   [[nodiscard]] static bool has_deceleration(const Clearance& clearance, const ShapePair& pair) noexcept {
     return &pair >= clearance.pairs().data() + clearance.shape_pairs() &&
            std::isfinite(clearance.bodies()[pair.first].deceleration);
@@ -233,8 +233,8 @@ class PairRows {
     return decrease;
   }
 
-  /// Index for a row with this slack. If fewer than kPairs rows are stored, the next index. Otherwise, the index of the
-  /// row with the largest slack, or kPairs if no row has more slack.
+  /// Index for a row with the given slack. If fewer than kPairs rows are stored, the next index. Otherwise, the index
+  /// of the row with the largest slack, or kPairs if no row has more slack.
   [[nodiscard]] Eigen::Index index_for(Scalar slack, Eigen::Index& count) const noexcept {
     if (count < kPairs) return count++;
     const Candidate* most = std::max_element(candidates_, candidates_ + kPairs,

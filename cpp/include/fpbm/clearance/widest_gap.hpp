@@ -29,9 +29,8 @@ template <typename Scalar>
   return vector - vector.dot(direction) / squared * direction;
 }
 
-/// Whether the difference of two nearest points is long enough to define a direction. In this case, the direction keeps
-/// three quarters of the digits of Scalar. gap_squared: squared length of the difference. size_squared: squared size of
-/// the shapes.
+/// Whether the difference of two nearest points is long enough to define a direction with three quarters of the digits
+/// of Scalar. gap_squared: squared length of the difference. size_squared: squared size of the shapes.
 template <typename Scalar>
 [[nodiscard]] bool tells_direction(Scalar gap_squared, Scalar size_squared) noexcept {
   using Limits = std::numeric_limits<Scalar>;
@@ -48,7 +47,7 @@ template <typename Scalar>
 /// where offset is the vector from the centre of the second shape to the centre of the first, and reach(n) is the sum
 /// of the half extents of both shapes along n. Both shapes must be convex and point-symmetric about their centres. The
 /// signed distance of the shapes is the maximum of gap(n) over all unit vectors n. A wrong candidate is therefore
-/// harmless: its gap is not larger. If gaps are equal up to round-off, the first direction is kept.
+/// harmless: its gap is not larger than the maximum. If gaps are equal up to round-off, the first direction is kept.
 template <typename Scalar, typename Reach>
 class WidestGap {
  public:

@@ -5,9 +5,10 @@
 // The library requires IEEE 754 arithmetic.
 //
 // An infinite bound means that there is no bound, and an arm brakes if a value is NaN. If compiler flags exclude
-// infinity and NaN, or let the compiler reorder sums, the results are wrong, and no error is reported. These flags are
-// therefore rejected if a macro reveals the flag. g++ before version 12 only reveals that IEEE arithmetic is
-// incomplete. clang does not reveal -fassociative-math alone; the library is correct with this flag (sincos.hpp).
+// infinity and NaN, or let the compiler reorder sums, the results are wrong, and no error is reported. Compilation
+// therefore fails if a macro reveals a flag that breaks IEEE arithmetic. g++ before version 12 only reveals that IEEE
+// arithmetic is incomplete. clang does not reveal -fassociative-math alone; the library is correct with this flag
+// (sincos.hpp).
 #if defined(__FAST_MATH__) || defined(_M_FP_FAST) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0) ||    \
     defined(__ASSOCIATIVE_MATH__) || defined(__NO_SIGNED_ZEROS__) ||                                                   \
     (defined(__GCC_IEC_559) && __GCC_IEC_559 == 0 && __GNUC__ < 12 && (defined(__x86_64__) || defined(__aarch64__)) && \

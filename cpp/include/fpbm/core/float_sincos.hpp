@@ -17,7 +17,7 @@ struct FloatSinCos {
 
   static void evaluate(float x, float& sine, float& cosine) noexcept {
 #if defined(__clang__) && __clang_major__ >= 12
-#pragma clang fp reassociate(off)  // Otherwise, the three parts are combined into one.
+#pragma clang fp reassociate(off)  // Reassociation would combine the three parts of π/2.
 #endif
     const auto quadrant = static_cast<std::int32_t>(x * 6.36619772e-01F + (x < 0.0F ? -0.5F : 0.5F));
     const auto k = static_cast<float>(quadrant);

@@ -23,8 +23,9 @@ struct AxisState {
 /// −sJ, then 0, then sJ. s is the sign of v + a|a|/2J, the velocity after the jerk ±J has reduced the acceleration to
 /// zero.
 ///
-/// A state with s > 0 is on the trajectory of jerk −J through a state with zero acceleration. This second state has the
-/// velocity v + a²/2J, the position q + va/J + a³/3J², and the stopping distance stopping_distance(v + a²/2J).
+/// A state with s > 0 is on the trajectory of jerk −J through a state with zero acceleration. The state with zero
+/// acceleration has the velocity v + a²/2J, the position q + va/J + a³/3J², and the stopping distance
+/// stopping_distance(v + a²/2J).
 template <typename Scalar>
 struct QuickestStop {
   Scalar acceleration;  ///< A, positive; infinite if there is no bound.

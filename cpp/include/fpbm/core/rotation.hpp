@@ -93,8 +93,8 @@ template <typename Scalar>
 
 /// Unit quaternion (w, v) of a rotation matrix, w ≥ 0.
 ///
-/// The largest entry is computed first, from the diagonal (S. W. Shepperd, Quaternion from rotation matrix, 1978). This
-/// is accurate at every angle, including 0 and π.
+/// The largest entry is computed first, from the diagonal (S. W. Shepperd, Quaternion from rotation matrix, 1978). The
+/// result is accurate at every angle, including 0 and π.
 template <typename Scalar>
 [[nodiscard]] Vector<4, Scalar> quaternion(const Matrix<3, 3, Scalar>& R) noexcept {
   using std::sqrt;

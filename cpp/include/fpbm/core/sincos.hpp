@@ -62,7 +62,7 @@ struct ReducedSinCos {
  private:
   static constexpr double kPerQuadrant = 6.36619772367581343e-01;
 
-  /// Nearest integer of x with excess precision (kHasExcessDigits). For these x, adding and subtracting kRound leaves a
+  /// Nearest integer of x with excess precision (kHasExcessDigits), where adding and subtracting kRound leaves a
   /// fraction.
   static double nearest_integer(double x) noexcept {
     return static_cast<double>(static_cast<std::int64_t>(x + (x < 0.0 ? -0.5 : 0.5)));
@@ -78,7 +78,7 @@ struct ReducedSinCos {
   template <typename Scalar>
   static Reduced<Scalar> reduce(const Scalar& x, const Scalar& k) noexcept {
 #if defined(__clang__) && __clang_major__ >= 12
-#pragma clang fp reassociate(off)  // Otherwise, both parts are combined into one, with an error of 2e-11.
+#pragma clang fp reassociate(off)  // Reassociation would combine both parts of π/2, with an error of 2e-11.
 #endif
     Scalar r = x - k * Scalar(1.57079632673412561e+00);
     r -= k * Scalar(6.07710050650619225e-11);

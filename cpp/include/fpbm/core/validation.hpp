@@ -36,8 +36,8 @@ class ParameterError : public std::invalid_argument {
 }  // namespace fpbm
 
 /// Checks of constructor arguments. A failed check throws a ParameterError, whose message has the name of the argument,
-/// the index and the value. Without exceptions, a failed check prints this message and aborts the program. With
-/// EIGEN_NO_IO in addition, the program aborts without a message.
+/// the index and the value. Without exceptions, a failed check prints the message of the error and aborts the program.
+/// With EIGEN_NO_IO in addition, the program aborts without a message.
 namespace fpbm::validation {
 
 /// Whether error messages can be reported: by an exception or on a stream. Otherwise, no message is built, since
@@ -48,7 +48,7 @@ inline constexpr bool kHasMessages = true;
 inline constexpr bool kHasMessages = false;
 #endif
 
-/// Throws a ParameterError with this value and message.
+/// Throws a ParameterError with the given value and message.
 [[noreturn, gnu::noinline, gnu::cold]] inline void reject_with([[maybe_unused]] const Argument& argument,
                                                                [[maybe_unused]] double value,
                                                                [[maybe_unused]] const std::string& message) {
@@ -60,7 +60,7 @@ inline constexpr bool kHasMessages = false;
 #endif
 }
 
-/// Throws a ParameterError with this value and the message "<argument><words>".
+/// Throws a ParameterError with the given value and the message "<argument><words>".
 template <typename Scalar, typename... Words>
 [[noreturn, gnu::noinline, gnu::cold]] void reject_value(const Argument& argument, Scalar value, Words... words) {
   if constexpr (kHasMessages) {

@@ -7,8 +7,8 @@ namespace fpbm {
 /// Limits::box_in_time(), where the bounds that the bound on jerk does not restrict are copied from `tick` bit for bit.
 /// tick: Limits::box() for this tick. last: acceleration of the last tick.
 ///
-/// Limits::box_in_time() and Limits::box() compute these bounds by iteration, with different errors. If a goal exceeded
-/// a bound of `tick` by the difference of the errors, the whole motion would be scaled down because of a joint on this
+/// Limits::box_in_time() and Limits::box() compute the bounds by iteration, with different errors. If a goal exceeded a
+/// bound of `tick` by the difference of the errors, the whole motion would be scaled down because of a joint on this
 /// bound.
 template <Level kLevel, int N, typename Scalar>
 [[nodiscard]] Box<N, Scalar> box_in_time(const Limits<kLevel, N, Scalar>& limits, const State<N, Scalar>& state,

@@ -92,8 +92,8 @@ struct JerkLimitedJoint {
   }
 
   /// Sufficient condition for a viable state, far from all bounds: |q̇| + u²/2J is within the bound on q̇, and a stop
-  /// from this velocity ends before both envelopes. Most states satisfy this condition. If the result is false, the
-  /// state may still be viable.
+  /// from this velocity ends before both envelopes. Most states satisfy the sufficient condition. If the result is
+  /// false, the state may still be viable.
   [[nodiscard]] bool is_far_from_bounds(const AxisState<Scalar>& at) const noexcept {
     const Scalar inverse_jerk = Scalar(1) / stop.jerk;
     const Scalar size = std::abs(at.a);
@@ -151,7 +151,7 @@ struct JerkLimitedJoint {
     if (!(envelope.stop_position < std::numeric_limits<Scalar>::infinity())) return high;
     const Scalar from = q - envelope.stop_position;
     // Upper end of the search: the acceleration that the envelope admits without a bound on jerk. If the joint already
-    // brakes along the envelope, this acceleration is the solution. Otherwise, it is slightly too large.
+    // brakes along the envelope, this acceleration is the solution. Otherwise, the acceleration is slightly too large.
     const Scalar falling = (envelope.largest_velocity(q, qd, tick) - qd) / tick;
     const auto excess = [&](Scalar u) noexcept { return this->excess_after(envelope, from, qd, u); };
     const Scalar found =
@@ -164,8 +164,8 @@ struct JerkLimitedJoint {
   }
 
   /// Largest acceleration u in the interval `some` with which q̇ increases by at most `speed_slack` [rad/s], in the
-  /// tick and in the following reduction of u to zero at the jerk −J. This is the positive root of u h + u²/2J =
-  /// speed_slack, or u = speed_slack/h if `speed_slack` is negative. If the velocity is unbounded, returns some.high.
+  /// tick and in the following reduction of u to zero at the jerk −J. u is the positive root of u h + u²/2J =
+  /// speed_slack, or speed_slack/h if `speed_slack` is negative. If the velocity is unbounded, returns some.high.
   [[nodiscard]] Scalar within_velocity(Scalar speed_slack, Interval<Scalar> some) const noexcept {
     using std::sqrt;
     const Scalar ratio = tick / speed_slack;
@@ -176,7 +176,7 @@ struct JerkLimitedJoint {
   }
 
   /// Largest excess over an envelope [rad] or [m] after a tick with the acceleration u. from: q − r at the start of
-  /// the tick. If from > 0, the joint is beyond its end. The result is then the position at the end of its shortest
+  /// the tick. If from > 0, the joint is beyond its end, and the result is the position at the end of the shortest
   /// stop, relative to the stop position.
   [[nodiscard]] Scalar excess_after(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar from, Scalar qd,
                                     Scalar u) const noexcept {
@@ -189,8 +189,8 @@ struct JerkLimitedJoint {
   }
 
   /// Result of viable() if few iterations find no acceleration that keeps the envelopes of both ends. After
-  /// more iterations, only round-off errors can prevent a result. In this case, the bound on velocity has priority, and
-  /// both envelopes are exceeded equally.
+  /// more iterations, only round-off errors can prevent a result. In the result, the bound on velocity has priority,
+  /// and both envelopes are exceeded equally.
   [[nodiscard, gnu::noinline]] Interval<Scalar> least_excess(Interval<Scalar> some, Scalar q,
                                                              Scalar qd) const noexcept {
     const Interval<Scalar> mirrored{-some.high, -some.low};

@@ -39,8 +39,8 @@ class Limiter {
   using Result = decltype(with_scale(std::declval<const Tasks&>(), std::declval<const JointVector&>(), Scalar(1)));
 
   /// reserve: fraction of each joint's bound on acceleration that the levels below the first level leave to the first
-  /// level. These levels leave half of this fraction of the bound on velocity. 0: the first level has no reserve, and
-  /// all levels share the limits. Throws std::invalid_argument if reserve is not in [0, 1].
+  /// level. The lower levels leave reserve/2 of the bound on velocity. 0: the first level has no reserve, and all
+  /// levels share the limits. Throws std::invalid_argument if reserve is not in [0, 1].
   explicit Limiter(const Limits<kLevel, N, Scalar>& limits, Scalar reserve = Scalar(0))
       : limits_(limits),
         lower_limits_(reserved_limits(limits, reserve)),
@@ -53,7 +53,7 @@ class Limiter {
 
   [[nodiscard]] const Limits<kLevel, N, Scalar>& limits() const noexcept { return limits_; }
 
-  /// Whether the limits, minus the reserve, admit a tick from one state to another. If so, the tick needs no limiter.
+  /// Whether the limits, minus the reserve, admit a tick from one state to another. An admitted tick needs no limiter.
   [[nodiscard]] bool admits(const JointState& from, const JointState& to, const JointVector& last) const noexcept {
     return lower_limits_.admits(from, to, last);
   }

@@ -31,9 +31,9 @@ class Limits {
  public:
   using JointVector = Vector<N, Scalar>;
 
-  /// tick: h [s]. A joint with bounds needs a bound on its acceleration. At velocity level, this bound may be missing:
-  /// the joint may then change its velocity by any amount within a tick. Throws std::invalid_argument, with the joint
-  /// and the value, if a bound is missing or invalid.
+  /// tick: h [s]. A joint with bounds needs a bound on its acceleration. At velocity level, the bound on acceleration
+  /// may be missing: the joint may then change its velocity by any amount within a tick. Throws std::invalid_argument,
+  /// with the joint and the value, if a bound is missing or invalid.
   Limits(const JointLimits<N, Scalar>& bounds, Scalar tick) : tick_(tick), bounds_(bounds.complete()) {
     validation::require_positive("dt", tick);
     const Eigen::Index n = bounds.lower.size();
@@ -121,8 +121,8 @@ class Limits {
   /// Whether differences of commanded positions keep the bounds V on velocity and A on acceleration in a tick of
   /// varying acceleration: the mean velocity v = (to.q − from.q)/h is within V, and |v − qd| ≤ A h/2 at both ends of
   /// the tick. For two consecutive ticks with the mean velocities v₁ and v₂, and the velocity qd between the ticks, the
-  /// second difference of positions is h (qd − v₁) + h (v₂ − qd), and therefore at most A h². A tick of constant
-  /// acceleration within the bounds satisfies this condition up to round-off.
+  /// second difference of positions is h (qd − v₁) + h (v₂ − qd), and therefore at most A h². For a tick of constant
+  /// acceleration within the bounds, the result is true up to round-off.
   [[nodiscard]] bool admits_differences(const State<N, Scalar>& from, const State<N, Scalar>& to) const noexcept {
     bool good = true;
     for (Eigen::Index i = 0; i < to.q.size(); ++i) {
@@ -141,7 +141,8 @@ class Limits {
 
   /// Motions that the limits admit for each joint in the next tick. If the state is not viable, for example a measured
   /// state, the box leads back to viable states. The bound on acceleration then has the first priority, and the bound
-  /// on velocity the second. A joint beyond its range returns as fast as these bounds allow, and can stop on the bound.
+  /// on velocity the second. A joint beyond its range returns as fast as the bounds on acceleration and velocity allow,
+  /// and can stop at the end of its range.
   [[nodiscard]] Box<N, Scalar> box(const State<N, Scalar>& state) const noexcept { return box(state, at_rest(state)); }
   [[nodiscard]] Box<N, Scalar> box(const State<N, Scalar>& state, const JointVector& last) const noexcept {
     return box_of(state, [&](Eigen::Index i, const auto& joint) { return joint.after(last(i)); });
@@ -164,7 +165,7 @@ class Limits {
   [[nodiscard]] Box<N, Scalar> box_of(const State<N, Scalar>& state, Accelerations&& accelerations) const noexcept {
     Box<N, Scalar> box{state.q, state.q};
     // This loop includes joints with a bound on jerk, so that the compiler vectorises the loop. The next loop replaces
-    // their bounds.
+    // the box of joints with a bound on jerk.
     if (jerk_bounds_ < state.q.size()) {
       for (Eigen::Index i = 0; i < state.q.size(); ++i) set(box, i, motions_of(i, state.q(i), state.qd(i)));
     }
@@ -208,8 +209,8 @@ class Limits {
     return std::abs(qd) <= bounds_.velocity(i) && upper_[i].allows(q, qd) && lower_[i].allows(-q, -qd);
   }
 
-  /// Round-off error of the position of joint i and of its distances to the ends of its range [rad] or [m]. One
-  /// distance has an error of at most ε (|q| + |end|). The factor 16 also covers the updates of q and of the envelopes
+  /// Round-off error of the position of joint i and of its distances to the ends of its range [rad] or [m]. A distance
+  /// has an error of at most ε (|q| + |end|). The factor 16 also covers the updates of q and of the envelopes
   /// (SlowJoints.let_a_tracker_start_from_the_state_of_another).
   [[nodiscard]] Scalar round_off(Eigen::Index i, Scalar q) const noexcept {
     Scalar size = std::abs(q);

@@ -47,7 +47,7 @@ struct Rows {
   /// motion `from` satisfies the rows up to round-off.
   [[nodiscard]] Scalar admitted_fraction(const Vector<N, Scalar>& from, const Vector<N, Scalar>& to) const noexcept {
     // The round-off error of g_k·u is at most (n/2) ε Σ|g_ki u_i| (Higham 2002, (3.5)), with n ≤ kMaxDof = 64. The
-    // factor 64 is twice this bound.
+    // factor 64 is twice the largest n/2.
     constexpr Scalar kRoundOff = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
     Scalar fraction(1);
     for (Eigen::Index k = 0; k < count; ++k) {

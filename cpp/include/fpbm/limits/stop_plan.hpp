@@ -34,10 +34,10 @@ struct StopDisplacement {
 /// Stopping trajectory from a viable state, known in closed form until rest (docs/clearance.md, Algorithm, Stopping
 /// trajectory).
 ///
-/// Two phases: in the ramp, all joints reduce their accelerations to zero. Then all joints brake in proportion, with
-/// the profile of the slowest joint. The path in joint space stays close to the straight line along the present
-/// velocity. A joint that would violate its bounds follows its own shortest stop. All states of the trajectory are
-/// viable.
+/// In the first phase, the ramp, all joints reduce their accelerations to zero. In the second phase, all joints brake
+/// in proportion, with the profile of the slowest joint. The path in joint space stays close to the straight line along
+/// the present velocity. A joint that would violate its bounds follows its own shortest stop. All states of the
+/// trajectory are viable.
 template <Level kLevel, int N, typename Scalar = double>
 class StopPlan {
  public:
@@ -97,7 +97,7 @@ class StopPlan {
     return result;
   }
 
-  /// Accelerations of the next tick of the plan. state: state at the start of this tick. before: accelerations of the
+  /// Accelerations of the next tick of the plan. state: state at the start of the tick. before: accelerations of the
   /// last tick. Advances the plan by one tick.
   [[nodiscard]] JointVector next(const JointLimits& limits, const State<N, Scalar>& state,
                                  const JointVector& before) noexcept {
@@ -154,7 +154,7 @@ class StopPlan {
  private:
   /// Number of ticks in which an acceleration changes to zero by at most `change` in each tick. Accelerations at the
   /// bound on jerk are multiples of `change` up to the round-off error of a difference of velocities, about 300 ε for
-  /// 2 rad/s, 1 ms and 7500 rad/s³. Because of the tolerance of 512 ε, this error does not add a tick.
+  /// 2 rad/s, 1 ms and 7500 rad/s³. Because of the tolerance of 512 ε, the round-off error does not add a tick.
   [[nodiscard]] static Scalar ticks_for(Scalar acceleration, Scalar change) noexcept {
     using std::ceil;
     constexpr Scalar kRoundOff = Scalar(512) * std::numeric_limits<Scalar>::epsilon();

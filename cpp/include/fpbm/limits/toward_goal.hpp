@@ -5,8 +5,8 @@
 namespace fpbm {
 
 /// Motion from `steady` toward a goal, as far as the bounds allow. saturation: saturation of one level or of several
-/// levels. found: the scales with which the goal was found. The scales of the result are multiplied by these scales.
-/// Motions have the unit of the box, [rad/s²] or [rad/s].
+/// levels. found: the scales with which the goal was found. The scales of the result are multiplied by the scales of
+/// `found`. Motions have the unit of the box, [rad/s²] or [rad/s].
 template <typename Saturation, typename Found, int N, int P, typename Scalar>
 [[nodiscard]] Found toward_goal(Saturation& saturation, const Box<N, Scalar>& box, const Rows<N, P, Scalar>& rows,
                                 const Vector<N, Scalar>& steady, const Vector<N, Scalar>& goal,

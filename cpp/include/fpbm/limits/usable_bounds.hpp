@@ -41,7 +41,7 @@ template <Level kLevel, typename Scalar>
   // has almost no effect.
   constexpr auto kPlenty = Scalar(1024);
   const Scalar most =
-      std::ldexp(Scalar(1), std::numeric_limits<Scalar>::max_exponent * 3 / 8);  // Its square is finite.
+      std::ldexp(Scalar(1), std::numeric_limits<Scalar>::max_exponent * 3 / 8);  // The square of `most` is finite.
   const Scalar range = bounds.upper - bounds.lower;
   if (std::isfinite(bounds.velocity)) bounds.velocity = std::min({bounds.velocity, kPlenty * (range / tick), most});
   if (std::isfinite(bounds.acceleration)) {

@@ -55,7 +55,7 @@ class Cholesky {
   /// Sets all solutions of a lane to NaN if the mask of the lane is false.
   void set_nan_unless(const Mask<Scalar>& truth) noexcept { fpbm::set_nan_unless(truth, reciprocal_[0]); }
 
-  /// Row whose pivot factor() rejected. The leading block of A above this row is positive definite.
+  /// Row whose pivot factor() rejected. The leading block of A above the rejected row is positive definite.
   [[nodiscard]] Eigen::Index lost_pivot() const noexcept { return lost_pivot_; }
 
   /// Solution x of A x = b.
@@ -96,7 +96,7 @@ class Cholesky {
     apply(b.data());
   }
 
-  /// Trace of A⁻¹. Its reciprocal is a lower bound on the smallest eigenvalue of A, tight within a factor M.
+  /// Trace of A⁻¹, whose reciprocal is a lower bound on the smallest eigenvalue of A, tight within a factor M.
   [[nodiscard]] Value inverse_trace() const noexcept { return fpbm::inverse_trace(L_, reciprocal_, extent<M>(size_)); }
 
  private:
@@ -115,8 +115,8 @@ class Cholesky {
   }
 
   /// Smallest pivot, relative to the largest diagonal entry. The round-off error is at most (M + 1) ε/2 (N. J. Higham,
-  /// Accuracy and Stability of Numerical Algorithms, 2002, theorem 10.3), half of this value for M = kMaxDof. With 6 ε,
-  /// singular matrices are accepted, and `*CholeskyOf*` fails for 32 rows; up to 6e5 ε pass.
+  /// Accuracy and Stability of Numerical Algorithms, 2002, theorem 10.3), half of kPivotTolerance for M = kMaxDof. With
+  /// 6 ε, singular matrices are accepted, and `*CholeskyOf*` fails for 32 rows; up to 6e5 ε pass.
   static constexpr auto kPivotTolerance = 64 * std::numeric_limits<Number<Scalar>>::epsilon();
   static constexpr Constant<0> kFirst{};
 

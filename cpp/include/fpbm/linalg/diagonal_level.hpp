@@ -33,8 +33,8 @@ template <int N, typename Scalar>
   return entrywise(v, [&](Eigen::Index i) { return J.entries.coeff(i) * v.coeff(i); });
 }
 
-/// Whether A is square and diagonal, without zeros on the diagonal. These rows are a posture of all joints: they
-/// determine all null-space motion of the higher levels, and need no factorisation of A.
+/// Whether A is square and diagonal, without zeros on the diagonal. The rows of A are then a posture of all joints,
+/// which determines all null-space motion of the higher levels and needs no factorisation of A.
 template <typename Matrix>
 [[nodiscard]] bool is_diagonal(const Matrix& A) noexcept {
   if (A.rows() != A.cols()) return false;

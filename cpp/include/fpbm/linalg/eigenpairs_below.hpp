@@ -75,7 +75,7 @@ class EigenpairsBelow {
 
  private:
   /// Larger than 100 √(min/ε)/ε with the smallest normal number min: 4e-129 for double, 3e-7 for float. If the largest
-  /// entry is above this value, the squares of round-off errors keep all digits.
+  /// entry is above kLeast, the squares of round-off errors keep all digits.
   static constexpr Scalar kLeast = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-128) : Scalar(1e-6);
 
   /// T ← HᵀTH makes T tridiagonal, where H is a product of reflections I − share v vᵀ. values: the diagonal; beside(i):

@@ -146,8 +146,8 @@ class LevelSpace {
     return y;
   }
 
-  /// Adds the level A and returns QᵀAᵀ: one column for each row of A, in the order of the pivots. Permutes r into this
-  /// order.
+  /// Adds the level A and returns QᵀAᵀ: one column for each row of A, in the order of the pivots. Permutes r into the
+  /// order of the pivots.
   template <int M>
   [[nodiscard]] Matrix<N, M, Scalar> triangular(const Matrix<M, N, Scalar>& A, Vector<M, Scalar>& r) noexcept {
     const Eigen::Index n = size();

@@ -18,7 +18,7 @@ template <typename Scalar>
 inline constexpr bool kRowsInPairs = std::is_same_v<Scalar, double>;
 
 /// Vector with the rows that f returns. f is called for one row, or for a pair of rows (kRowsInPairs). The argument of
-/// f is a function rows(column), which reads these rows of a column in memory.
+/// f is a function rows(column), which reads the row, or the pair of rows, of a column in memory.
 template <int M, typename Scalar, typename F>
 [[nodiscard, gnu::always_inline]] inline Vector<M, Scalar> by_rows(const F& f) noexcept {
   Vector<M, Scalar> result;

@@ -55,7 +55,7 @@ class Remainders {
  private:
   /// Largest remainder of a dependent row, as a fraction of the length of the row. The remainder of a dependent row is
   /// round-off error, 1e-16 times the condition number of the higher levels. A motion along a remainder of 1e-9 already
-  /// amplifies this error to 1e-7. Factors of 0.01 to 10 pass `LevelSpace.*`.
+  /// amplifies the round-off error to 1e-7. Factors of 0.01 to 10 pass `LevelSpace.*`.
   static constexpr Scalar kDependent = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-9) : Scalar(1e-4);
 
   /// Fraction of a squared length below which a difference of squares has lost 3 of 16 digits. With 1e-9,

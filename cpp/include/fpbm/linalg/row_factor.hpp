@@ -77,7 +77,7 @@ class RowFactor {
 
   /// P a, the projection of a on the null space of A: P = Π_i (I − q_i q_iᵀ/q_iᵀq_i).
   ///
-  /// Each factor is applied to the result of the previous factor. This is slightly more accurate than I − Q D⁻¹ Qᵀ,
+  /// Each factor is applied to the result of the previous factor, which is slightly more accurate than I − Q D⁻¹ Qᵀ,
   /// because the computed columns of Q are not exactly orthogonal.
   [[nodiscard]] Vector<N, Value> project(const Vector<N, Value>& a) const noexcept {
     const auto n = extent<N>(Q_.rows());
@@ -89,7 +89,7 @@ class RowFactor {
     return result;
   }
 
-  /// Q s. If s = coefficients(b), this is A⁺b.
+  /// Q s, which is A⁺b for s = coefficients(b).
   [[nodiscard]] Vector<N, Value> combine(const Vector<M, Value>& s) const noexcept {
     Vector<N, Value> y;
     y.resize(Q_.rows());
@@ -110,13 +110,14 @@ class RowFactor {
   [[nodiscard]] Vector<M, Value> back_substitute(const Vector<M, Value>& s) const noexcept {
     Vector<M, Value> x = s;
     for (Eigen::Index i = x.size() - 2; i >= 0; --i) {
-      for (Eigen::Index j = x.size() - 1; j > i; --j) x(i) -= L_[j][i] * x(j);  // Descending: x(i + 1) is known last.
+      // x(i + 1) is computed last, and therefore used last: the earlier products do not wait for x(i + 1).
+      for (Eigen::Index j = x.size() - 1; j > i; --j) x(i) -= L_[j][i] * x(j);
     }
     return x;
   }
 
-  /// Trace of (AAᵀ)⁻¹. Its reciprocal is a lower bound on the square of the smallest singular value of A, tight within
-  /// a factor M.
+  /// Trace of (AAᵀ)⁻¹, whose reciprocal is a lower bound on the square of the smallest singular value of A, tight
+  /// within a factor M.
   [[nodiscard]] Value inverse_trace() const noexcept { return fpbm::inverse_trace(L_, reciprocal_, rows()); }
 
  private:

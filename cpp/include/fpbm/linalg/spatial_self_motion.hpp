@@ -83,9 +83,9 @@ class SpatialSelfMotion {
            dot(hands, x);
   }
 
-  /// ‖P‖² + (‖P‖ ‖G‖ + ‖K‖)²/length², with Frobenius norms. This is an upper bound on the squared norm of H = [P, ((K,
-  /// 0) − P G)/length], a right inverse of DJ, where P = (−X S⁺, S⁺) and G = B_T K. Hence 1/σ²_min(DJ) ≤ ‖H‖²
-  /// (docs/equations.md, Degree of redundancy 1, Damping).
+  /// ‖P‖² + (‖P‖ ‖G‖ + ‖K‖)²/length², with Frobenius norms: an upper bound on the squared norm of
+  /// H = [P, ((K, 0) − P G)/length], a right inverse of DJ, where P = (−X S⁺, S⁺) and G = B_T K. Hence
+  /// 1/σ²_min(DJ) ≤ ‖H‖² (docs/equations.md, Degree of redundancy 1, Damping).
   [[nodiscard, gnu::noinline]] Scalar inverse_square(const Scalar& length) const noexcept {
     using std::sqrt;
     Twice s12[3], s34[3];

@@ -15,7 +15,7 @@ inline constexpr auto kCertain = 4096 * std::numeric_limits<Number<Scalar>>::eps
 ///   ṽ = (s₂·c₃₄, −s₁·c₃₄, s₄·c₁₂, −s₃·c₁₂),   S ṽ = 0,   |ṽ|² = det SSᵀ,
 ///   S⁺a = D ṽ / |ṽ|²,   where D is skew-symmetric with the entries ± c_kl·a (combine).
 ///
-/// This is Cramer's rule for [S; ṽᵀ] y = [a; 0]. The rule needs one division, no pivoting and no square root. The
+/// The formulas are Cramer's rule for [S; ṽᵀ] y = [a; 0], and need one division, no pivoting and no square root. The
 /// condition number of S enters the round-off error once, and not squared as with SSᵀ.
 ///
 /// A Twice holds the values of two columns or minors: s12 is (s₁, s₂), c13_24 is (c₁₃, c₂₄), v34 is (ṽ₃, ṽ₄).
@@ -43,8 +43,8 @@ class ThreeByFour {
   }
 
   /// Whether |ṽ|² is more than share times its largest value, the product of the squared lengths of the rows of S. |ṽ|²
-  /// has this value if the rows are orthogonal. The round-off error of ṽ is proportional to the product of the lengths
-  /// of the rows.
+  /// has its largest value if the rows are orthogonal. The round-off error of ṽ is proportional to the product of the
+  /// lengths of the rows.
   [[nodiscard]] Mask<Scalar> is_regular(const Scalar& share) const noexcept { return square_ > share * largest_; }
 
   /// |ṽ|²
@@ -87,7 +87,7 @@ class ThreeByFour {
   }
 
   /// Squared lengths of the columns of S⁺, which are the diagonal of (SSᵀ)⁻¹. Entry i is Σ m²/|ṽ|² over the 2 × 2
-  /// minors m of the two other rows of S. These minors are component i of the c_kl.
+  /// minors m of the two other rows of S. The minors m are component i of the c_kl.
   [[nodiscard]] Three<Scalar> inverse_squares() const noexcept {
     const auto squares = [this](const Twice& a, const Twice& b, const Twice& c) {
       return over_ * sum(a * a + b * b + c * c);

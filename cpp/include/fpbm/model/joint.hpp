@@ -91,8 +91,7 @@ struct JointLimits {
     return {lower(i), upper(i), velocity(i), acceleration(i), jerk(i), velocity_offset(i), deceleration(i)};
   }
 
-  /// Copy of these limits. If jerk, velocity_offset or deceleration has no entries, the copy has no bounds of this
-  /// kind.
+  /// Copy of the limits. If jerk, velocity_offset or deceleration has no entries, the copy has no bounds of this kind.
   [[nodiscard]] JointLimits complete() const {
     const JointLimits given{lower, upper, velocity, acceleration};
     JointLimits all = *this;

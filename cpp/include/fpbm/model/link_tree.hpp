@@ -21,7 +21,7 @@ class LinkTree {
   using Axes = Screws<Joints, Scalar>;
   using Columns = typename Axes::ColumnPair;
 
-  /// source: a checked Tree or Chain. Throws std::invalid_argument if its number of joints is not Joints.
+  /// source: a checked Tree or Chain. Throws std::invalid_argument if the number of joints is not Joints.
   template <typename Source>
   explicit LinkTree(const Source& source) : pass_(size_of(source)) {
     for (Eigen::Index i = 0; i < pass_.dof(); ++i) {
@@ -46,7 +46,7 @@ class LinkTree {
   }
 
   [[nodiscard]] int joints() const noexcept { return static_cast<int>(pass_.dof()); }
-  /// Whether joint i, counted from 0, is revolute. Otherwise, it is prismatic.
+  /// Whether joint i, counted from 0, is revolute, and not prismatic.
   [[nodiscard]] bool turns(Eigen::Index i) const noexcept { return pass_.turns().coeff(i) > Scalar(0); }
   /// Bits of the joints that move a link.
   [[nodiscard]] JointBits moved_by(int link) const noexcept { return moved_by_[index(link)]; }

@@ -14,7 +14,7 @@ namespace fpbm {
 /// Manipulability w = √det(JJᵀ) of a task Jacobian (Yoshikawa 1985): the volume that the rows span, 0 at a singular
 /// posture. Unit: the product of the units of the rows of J.
 ///
-/// Computed as base times height, row by row. This is accurate near singular postures.
+/// Computed as base times height, row by row, which is accurate near singular postures.
 template <int M, int N, typename Scalar>
 [[nodiscard]] Scalar manipulability(const Matrix<M, N, Scalar>& J) noexcept {
   using std::max;

@@ -30,7 +30,7 @@ struct BothWays {
   operator JointBounds<>() const { return {-position * kDegree, position * kDegree, velocity * kDegree, acceleration}; }
 };
 
-/// The chain with these bounds, and with joints named name1, name2, …
+/// The chain with the given bounds, and with joints named name1, name2, …
 template <typename Bounds>
 [[nodiscard]] Chain<> driven(Chain<> chain, const std::string& name, const std::vector<Bounds>& bounds) {
   for (std::size_t i = 0; i < bounds.size(); ++i) {

@@ -16,8 +16,8 @@ namespace fpbm {
 /// Tree of joints. N joints have a drive, and the other joints follow a drive. Tasks refer to the links of the robot.
 /// Immutable.
 ///
-/// Link 0 is the base. Joint i, counted from 0, moves link i + 1. The frame of this link is the frame of the joint
-/// after the motion of the joint. kTip is the tip of a chain. Joints: number of joints, N by default.
+/// Link 0 is the base. Joint i, counted from 0, moves link i + 1. The frame of link i + 1 is the frame of joint i after
+/// the motion of the joint. kTip is the tip of a chain. Joints: number of joints, N by default.
 template <int N, typename Scalar_ = double, int Joints = N>
 class Robot {
  public:
@@ -61,7 +61,7 @@ class Robot {
   /// frame or a joint.
   [[nodiscard]] Scalar length() const noexcept { return length_; }
   [[nodiscard]] const Drives<N, Joints, Scalar>& drives() const noexcept { return drives_; }
-  /// Whether joint i, counted from 0, is revolute. Otherwise, it is prismatic.
+  /// Whether joint i, counted from 0, is revolute, and not prismatic.
   [[nodiscard]] bool turns(Eigen::Index i) const noexcept { return tree_.turns(i); }
   /// Bits of the joints that move a link.
   [[nodiscard]] JointBits moved_by(int link) const noexcept { return tree_.moved_by(number_of(link)); }

@@ -61,11 +61,11 @@ inline void add(Tree<>& tree, const Row& row, int parent, const std::string& sid
 }  // namespace humanoids
 
 /// Upper body of a Unitree G1 (29 joints): waist and arms, 17 joints, with the frames left_wrist_yaw_link and
-/// right_wrist_yaw_link. The pelvis is the base. Its mass includes the legs, which are held straight.
+/// right_wrist_yaw_link. The pelvis is the base. The mass of the pelvis includes the legs, which are held straight.
 ///
-/// Source: g1_29dof_rev_1_0.urdf of Unitree's unitree_ros (BSD-3-Clause). The velocities in this file are the no-load
-/// velocities of the motors. Bounds on acceleration are not published: 20 rad/s² is a choice. Masses are rounded to
-/// 1 mg, and their centres to 1 µm.
+/// Source: g1_29dof_rev_1_0.urdf of Unitree's unitree_ros (BSD-3-Clause). The velocities in the URDF file are the
+/// no-load velocities of the motors. Bounds on acceleration are not published: 20 rad/s² is a choice. Masses are
+/// rounded to 1 mg, and their centres to 1 µm.
 [[nodiscard]] inline Tree<> g1_upper_body() {
   using humanoids::Row;
   const Vector<3> x(1.0, 0.0, 0.0);

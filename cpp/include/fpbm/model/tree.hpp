@@ -55,7 +55,7 @@ template <typename Scalar, int Joints, int Frames>
   return tree.joints[static_cast<std::size_t>(i)].joint;
 }
 
-/// Number of the link that carries joint i. In a chain, this is the link of the previous joint.
+/// Number of the link that carries joint i: in a chain, the link of the previous joint.
 template <typename Scalar, int Joints, int Frames>
 [[nodiscard]] int parent_of(const Tree<Scalar, Joints, Frames>& tree, Eigen::Index i) noexcept {
   return tree.joints[static_cast<std::size_t>(i)].parent;
@@ -65,9 +65,9 @@ template <typename Scalar, int Length>
   return static_cast<int>(i);
 }
 
-/// Checks a tree and returns its number of joints. Throws std::invalid_argument if this number exceeds kMaxDof or is
-/// zero, a link does not come before the joint that it carries, the link of a frame does not exist, or a number is out
-/// of range.
+/// Checks a tree and returns its number of joints. Throws std::invalid_argument if the number of joints exceeds kMaxDof
+/// or is zero, a link does not come before the joint that it carries, the link of a frame does not exist, or a number
+/// is out of range.
 template <typename Scalar, int Joints, int Frames>
 Eigen::Index require_tree(const Tree<Scalar, Joints, Frames>& tree) {
   validation::require_dof("joints", static_cast<Eigen::Index>(tree.joints.size()), 1);

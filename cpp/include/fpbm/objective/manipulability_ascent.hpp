@@ -15,7 +15,7 @@ namespace fpbm {
 /// (Yoshikawa 1985; docs/equations.md, Secondary objectives): u + gain ZZᵀ∇w, where u is the result of the wrapped
 /// scheme and Z an orthonormal basis of the null space of J.
 ///
-/// The ascent is a scheme itself and may be wrapped again. At acceleration level, ∇w acts like a force: with
+/// The ascent is also a scheme, and may be wrapped again. At acceleration level, ∇w acts like a force: with
 /// NullSpace::with_damping, the arm comes to rest at the best posture; without damping, the arm oscillates about the
 /// best posture without decay.
 template <typename Scheme, typename Arm>

@@ -21,8 +21,8 @@ namespace fpbm {
 /// one more part, and throws std::invalid_argument if a value is out of range.
 ///
 /// Repetitive motion planning (Zhang and others, Mechatronics 18, 2008) removes the drift of the joints on closed
-/// paths. With the gain λ, this scheme equals a rest posture at the start posture: at velocity level with stiffness λ,
-/// at acceleration level with stiffness λ² and damping 2λ (critical damping).
+/// paths. With the gain λ, repetitive motion planning equals a rest posture at the start posture: at velocity level
+/// with stiffness λ, at acceleration level with stiffness λ² and damping 2λ (critical damping).
 template <int N, typename Scalar = double>
 class NullSpace {
  public:
@@ -108,7 +108,7 @@ class NullSpace {
     return has_constant_ || (kLevel == Level::kAcceleration && has_damping_);
   }
 
-  /// z in this state.
+  /// z in a state.
   template <Level kLevel>
   [[nodiscard]] Vector<N, Scalar> at(const State<N, Scalar>& state) const noexcept {
     Vector<N, Scalar> z = entrywise(state.q, [](Eigen::Index) { return Scalar(0); });

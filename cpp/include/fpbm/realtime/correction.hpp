@@ -73,7 +73,7 @@ class Correction {
     return reference;
   }
 
-  /// Sets the integrals of some rows to zero. row: first of these rows. rows: their number.
+  /// Sets the integrals of some rows to zero. row: first row. rows: number of rows.
   void reset_integrals(int row, int rows) noexcept {
     for (int i = row; i < row + rows; ++i) integral_(i) = Scalar(0);
   }

@@ -78,7 +78,7 @@ class LimitedState {
   }
 
   /// Whether a state is finite, and so far from overflow that braking does not overflow. The acceleration between two
-  /// velocities of a braking joint is at most 2 |q̇|/h. The factor 4 is twice this bound.
+  /// velocities of a braking joint is at most 2 |q̇|/h, half of the tested 4 |q̇|/h.
   [[nodiscard]] bool is_brakable(const JointState& state) const noexcept {
     const Scalar rate = Scalar(4) / dt();
     return is_finite(state.q) &&
@@ -86,9 +86,8 @@ class LimitedState {
   }
 
   /// Whether a tick has one acceleration (docs/equations.md, A tick with one acceleration): a tick of several tasks at
-  /// acceleration level. An RK4 step would contain motions of lower levels that the limits do not admit. In the mean
-  /// motion of the step, these motions would disturb the higher levels by J̇q̇. An RK4 step also resolves the tasks
-  /// four times.
+  /// acceleration level. An RK4 step would contain motions of lower levels that the limits do not admit, and that
+  /// disturb the higher levels by J̇q̇ in the mean motion of the step. An RK4 step also resolves the tasks four times.
   template <typename Arm>
   [[nodiscard]] static bool has_one_acceleration(const Arm& arm) noexcept {
     return kSecondOrder && has_several_tasks(arm);
@@ -97,11 +96,11 @@ class LimitedState {
   /// Rows of the guard at the start of the tick.
   [[nodiscard]] auto rows() noexcept { return guard_.rows(limits(), tick_.joints); }
 
-  /// Whether, at the start of a tick, damping is active, or the limits or the rows do not admit the acceleration. Then
-  /// the tick has one acceleration, which is evaluated in the middle of the tick, and no RK4 step (docs/limits.md,
-  /// Bounds on jerk). The function sets `next` to the state after the tick, and leaves the kinematics of the middle in
-  /// `loop`. Therefore the longest ticks resolve the task twice instead of four times. reference: in the middle of the
-  /// tick. at_start: joint accelerations at the start [rad/s²].
+  /// Whether, at the start of a tick, damping is active, or the limits or the rows do not admit the acceleration. If
+  /// the result is true, the tick has one acceleration, which is evaluated in the middle of the tick, and no RK4 step
+  /// (docs/limits.md, Bounds on jerk). The function sets `next` to the state after the tick, and leaves the kinematics
+  /// of the middle in `loop`. Therefore the longest ticks resolve the task twice instead of four times. reference: in
+  /// the middle of the tick. at_start: joint accelerations at the start [rad/s²].
   template <typename Loop, typename Target, typename Rows>
   [[nodiscard]] bool evaluate_middle_if_limited(Loop& loop, const Target& reference, const Rows& rows,
                                                 JointVector at_start, JointState& next, Result& result) const noexcept {
@@ -182,7 +181,7 @@ class LimitedState {
   }
 
   /// State after a tick of the limited motion, if the arm brakes or a bound does not admit the desired motion. The
-  /// arguments are those of finish_tick().
+  /// arguments are as in finish_tick().
   template <typename Loop, typename Target, typename Rows>
   [[nodiscard]] JointState limited_tick(Loop& loop, const Target& now, const Rows& rows, const JointState& next,
                                         const JointVector& field, bool one_acceleration,

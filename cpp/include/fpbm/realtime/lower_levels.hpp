@@ -17,8 +17,8 @@
 
 namespace fpbm {
 
-/// Stops the tasks of lower levels that do not approach their targets. Otherwise, these tasks could oscillate or drift
-/// in the null space of the higher levels while limits slow them, and the robot would not stop.
+/// Stops the tasks of lower levels that do not approach their targets. Otherwise, tasks of lower levels could oscillate
+/// or drift in the null space of the higher levels while limits slow the tasks, and the robot would not stop.
 ///
 /// The largest error of each task in a window of stall_time is compared with the largest errors in earlier windows. A
 /// task makes progress if its error is below 15/16 of the errors of all earlier windows. A task of a lower level stops
@@ -34,7 +34,7 @@ class LowerLevels {
 
   LowerLevels(Scalar stall_time, Scalar dt) noexcept : stall_time_(stall_time), dt_(dt) { release(); }
 
-  /// Call at the start of a tick. kinematics: in the state at the start. error: errors of the tasks in this state.
+  /// Call at the start of a tick. kinematics: in the state at the start. error: errors of the tasks at the start.
   /// Replaces the references of stopped tasks, and begins the correction again without their errors and integrals.
   template <typename References, typename Kinematics, typename Correction>
   void hold(References& references, const Kinematics& kinematics, Vector<Space::kRows, Scalar> error,

@@ -24,13 +24,13 @@ inline void require_measured_delay(int delay) {
 /// Joint limits of an arm whose measured state is up to d ticks old (docs/realtime.md, Delay of measured states). The
 /// age may be unknown and may vary.
 ///
-/// The bounds on velocity and the braking envelopes are those of Limits with a longer tick H. Toward each bound, the
-/// gain of the feedback on the measured velocity is β ≤ g/h, where g = dᵈ/(d+1)ᵈ⁺¹ is the largest gain for which
+/// Uses the bounds on velocity and the braking envelopes of Limits with a longer tick H. Toward each bound, the gain of
+/// the feedback on the measured velocity is β ≤ g/h, where g = dᵈ/(d+1)ᵈ⁺¹ is the largest gain for which
 /// q̇ₖ₊₁ = q̇ₖ − g q̇ₖ₋d decays without oscillation. With the offset from offset(), the arm approaches the envelopes
 /// without overshoot. docs/realtime.md derives H, the offset and their stability margins.
 ///
 /// A bound J on jerk limits the change from one command to the next. If H ≥ A/J, the accelerations that keep the other
-/// bounds never need a larger jerk (for the envelopes, this is a measured result).
+/// bounds never need a larger jerk (for the envelopes, a measured result).
 ///
 /// If d = 0, the state is exact, and Limits apply unchanged.
 template <int N, typename Scalar = double>

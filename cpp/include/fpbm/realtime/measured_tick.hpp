@@ -9,7 +9,8 @@
 namespace fpbm {
 
 /// Ends a tick of Tracker::resolve_measured(): computes the acceleration within the limits for a measured state. loop:
-/// kinematics and acceleration of the scheme in this state. `last`: last command. result: has the status of the scheme.
+/// kinematics and acceleration of the scheme in the measured state. `last`: last command. result: has the status of the
+/// scheme.
 template <typename Loop, typename Limiter, typename LimitedState, typename Space, int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> limit_measured(const Loop& loop, const Limiter& limiter, LimitedState& tracker_state,
                                                const State<N, Scalar>& measured, const Vector<N, Scalar>& last,

@@ -16,8 +16,9 @@ namespace fpbm {
 /// cubic is one ramp (argument of the constructor).
 ///
 /// If a call reverses a running transition, ṙ first decreases to zero at |r̈| = 6/ramp². The cubics leave enough range
-/// for this. If r already changes toward its new value so fast that the cubic would overshoot, a shorter cubic is used.
-/// Therefore r is always in [0, 1], |ṙ| ≤ 1.5/ramp, |r̈| ≤ 8/ramp², and a transition takes at most 1.25 ramps.
+/// of r for the reversal. If r already changes toward its new value so fast that the cubic would overshoot, a shorter
+/// cubic is used. Therefore r is always in [0, 1], |ṙ| ≤ 1.5/ramp, |r̈| ≤ 8/ramp², and a transition takes at most 1.25
+/// ramps.
 template <typename Path_>
 class PathFollower {
  public:
@@ -84,15 +85,15 @@ class PathFollower {
 
   /// Starts the transition of the rate r to target, 0 or 1, from its present value and slope.
   ///
-  /// In the equations, time is in ramps. The gap is |target − r|. Its slope is defined as −d(gap)/dt: positive while r
-  /// approaches target.
+  /// In the equations, time is in ramps. The gap is |target − r|. The slope of the gap is defined as −d(gap)/dt:
+  /// positive while r approaches target.
   ///
   /// slope_ < 0: r moves away from target. At first, the slope increases by 6 per ramp, and is zero after
-  /// reversal_ = −slope_/6 ramps. In this time, the gap increases by slope_²/12. Then a cubic of one ramp brings the
-  /// gap from cubic_gap_ to zero.
+  /// reversal_ = −slope_/6 ramps. During the reversal, the gap increases by slope_²/12. Then a cubic of one ramp brings
+  /// the gap from cubic_gap_ to zero.
   ///
-  /// slope_ ≥ 0: a cubic brings the gap to zero. At its start, the cubic has the slope slope_. Its duration is one
-  /// ramp, or 3 gap_/slope_ if the cubic would overshoot in one ramp.
+  /// slope_ ≥ 0: a cubic brings the gap to zero. At its start, the cubic has the slope slope_. The duration of the
+  /// cubic is one ramp, or 3 gap_/slope_ if the cubic would overshoot in one ramp.
   void start_transition(Scalar target) noexcept {
     if (target == target_) return;
     const auto [r, rd] = rate(elapsed_);

@@ -75,8 +75,8 @@ class Progress {
 
  private:
   /// Fraction of its velocity bound below which a joint crawls. If an arm approaches its target within small velocity
-  /// bounds, a joint is near its bound. The arm of Recovery.a_blocked_arm_stops_crawling moves at 0.2 % of its bounds.
-  /// This test passes with 0.001 to 0.1.
+  /// bounds, a joint is near its bound. The arm of Recovery.a_blocked_arm_stops_crawling moves at 0.2 % of its bounds;
+  /// the test passes with 0.001 to 0.1.
   static constexpr Scalar kCrawl = Scalar(0.01);
 
   StallDetector<Space, Scalar> stall_;

@@ -14,16 +14,16 @@ namespace fpbm {
 /// Moves a stalled arm to a posture from which its target is reachable (docs/realtime.md, Unreachable targets).
 ///
 /// An arm that followed its target out of the workspace and back may stop away from a reachable target: in a singular
-/// posture with Jᵀe = 0, or with joints at the ends of their ranges. Feedback of the tip cannot leave this local
-/// minimum of the error. Therefore the arm remembers up to kPostures postures in which it executed the whole task, with
-/// tips as far apart as possible. A stalled arm recovers if a remembered tip is nearer to the target than the arm's own
-/// tip, or if the target has returned toward a remembered tip. In a recovery, the joints move to the remembered posture
-/// in a straight line. Then the scheme continues.
+/// posture with Jᵀe = 0, or with joints at the ends of their ranges. Feedback of the tip cannot leave a local minimum
+/// of the error. Therefore the arm remembers up to kPostures postures in which it executed the whole task, with tips as
+/// far apart as possible. A stalled arm recovers if a remembered tip is nearer to the target than the arm's own tip, or
+/// if the target has returned toward a remembered tip. In a recovery, the joints move to the remembered posture in a
+/// straight line. Then the scheme continues.
 ///
 /// The tip of each recovery must be nearer to the target than the tip of the previous recovery, by a step of progress.
-/// If the target has returned, this condition does not apply to one recovery. Therefore, a constant target causes at
-/// most kPostures + 1 recoveries. If an arm with an unreachable target has stalled nearer to the target than every
-/// remembered tip, the target causes no recovery.
+/// If the target has returned, the condition on the tip does not apply to one recovery. Therefore, a constant target
+/// causes at most kPostures + 1 recoveries. If an arm with an unreachable target has stalled nearer to the target than
+/// every remembered tip, the target causes no recovery.
 template <typename Space, int N, typename Scalar = double>
 class Recovery {
  public:
@@ -39,7 +39,7 @@ class Recovery {
   /// Whether the joints are moving to a remembered posture.
   [[nodiscard]] bool active() const noexcept { return active_; }
 
-  /// Whether a posture differs from the last one passed to remember() by more than kNewJoint in some joint.
+  /// Whether a posture differs from the last posture passed to remember() by more than kNewJoint in some joint.
   [[nodiscard]] bool is_new(const JointVector& q) const noexcept {
     if (count_ == 0) return true;
     for (Eigen::Index i = 0; i < q.size(); ++i) {
@@ -124,7 +124,7 @@ class Recovery {
   }
 
  private:
-  // These values are not tuned. `fpbm_tests --gtest_filter='Recovery.brings*'` prints how many arms do not return.
+  // The values below are not tuned. `fpbm_tests --gtest_filter='Recovery.brings*'` prints how many arms do not return.
   static constexpr Scalar kNewJoint =
       Scalar(0.1);                                 ///< Change of a joint that may move the tip by kSpread [rad] or [m].
   static constexpr Scalar kSpread = Scalar(0.05);  ///< Smallest distance of two remembered tips, as TaskDistance.
@@ -179,11 +179,11 @@ class Recovery {
   std::int64_t age_ = 0;
   JointVector last_remembered_;  ///< Last posture passed to remember().
   JointVector goal_;
-  /// Distance from this target to the tip of the last recovery.
+  /// Distance from the target to the tip of the last recovery.
   Scalar last_distance_ = std::numeric_limits<Scalar>::infinity();
   /// Largest distance of the target from the nearest remembered tip since the last settle().
   Scalar farthest_ = Scalar(0);
-  bool returned_ = false;              ///< Whether the return of this target has caused a recovery.
+  bool returned_ = false;              ///< Whether the return of the target has caused a recovery.
   Scalar start_distance_ = Scalar(0);  ///< Distance to the posture at the start of the recovery.
   Scalar least_distance_ = Scalar(0);  ///< Smallest distance to the posture during the recovery.
   Scalar waited_ = Scalar(0);          ///< Time without progress [s].

@@ -21,8 +21,8 @@ template <typename Source, typename Scalar>
   return source.ahead(seconds);
 }
 
-/// Advances a source after a tick of dt [s]. stopping: whether the arm stops. Then a PathFollower waits, and a
-/// TargetFilter continues.
+/// Advances a source after a tick of dt [s]. stopping: whether the arm stops. While the arm stops, a PathFollower
+/// waits, and a TargetFilter continues.
 template <typename Space, typename Scalar>
 void advance_source(const Reference<Space, Scalar>&, Scalar, bool) noexcept {}
 template <typename Path, typename Scalar>

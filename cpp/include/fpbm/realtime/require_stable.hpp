@@ -15,7 +15,7 @@ struct TickOfGains {
   Scalar integral_gain;  ///< kᵢ [1/s³], or [1/s²] at velocity level.
   /// Whether the tick continues the previous tick: several tasks, or several levels at velocity level.
   bool continues = false;
-  bool null_space = false;  ///< Whether these are gains of the null space, to which TickFeedback does not apply.
+  bool null_space = false;  ///< Whether the gains belong to the null space, to which TickFeedback does not apply.
 };
 
 /// Gains of one error with their names: k₁ [1/s] and k₂ [1/s²], or k₂ alone [1/s] at velocity level.
@@ -96,8 +96,7 @@ inline constexpr bool kHasSprings<Scheme, std::void_t<decltype(Scheme::null_spac
 
 /// Throws std::invalid_argument if a tick does not damp the errors that a scheme feeds back: the task error, with k₁
 /// and k₂ or k, and with the tracker's integral; the null-space error, with the smallest and the largest stiffness of
-/// the joints. Accepts a scheme without these gains. For a scheme type of your own, an overload in its namespace is
-/// used.
+/// the joints. Accepts a scheme without gains. For a scheme type of your own, an overload in its namespace is used.
 template <typename Scheme, typename Scalar>
 void require_stable(const Scheme& scheme, const TickOfGains<Scalar>& tick) {
   constexpr Level kLevel = Scheme::kLevel;

@@ -13,8 +13,8 @@
 
 namespace fpbm {
 
-/// Result of a tick of a stack. status, scale and sigma are those of the first level, except that status is kSlowed if
-/// only a lower level is slowed. error: x ⊖ f(q) of each task. A coordinate that a task does not select has no error
+/// Result of a tick of a stack. status, scale and sigma describe the first level, except that status is kSlowed if only
+/// a lower level is slowed. error: x ⊖ f(q) of each task. A coordinate that a task does not select has no error
 /// (task_error).
 template <typename... Levels, int N, typename Scalar>
 struct Tick<StackSpace<Levels...>, N, Scalar> : TickOfRows<StackSpace<Levels...>::kRows, N, Scalar> {

@@ -37,11 +37,11 @@ template <typename Space, int N, typename Scalar, typename Motion>
 void take_scale(Tick<Space, N, Scalar>& tick, const Motion& motion) noexcept {
   tick.scale = motion.scale;
 }
-/// Reports the levels below the first level. A single task has none.
+/// Reports the levels below the first level. A single task has no lower level.
 template <typename Space, int N, typename Scalar>
 void report_lower_levels(Tick<Space, N, Scalar>&) noexcept {}
 
-/// Scale of a task below the first level. row: first row of its error. A single task has no lower level.
+/// Scale of a task below the first level. row: first row of the task's error. A single task has no lower level.
 template <typename Space, int N, typename Scalar>
 [[nodiscard]] Scalar lower_scale(const Tick<Space, N, Scalar>&, int) noexcept {
   return Scalar(1);
@@ -68,17 +68,16 @@ struct TrackerOptions {
   Scalar stall_time = Scalar(2);
   /// Damping near singular postures, for a scheme that has none.
   SingularDamping<Scalar> singular = SingularDamping<Scalar>();
-  /// Null-space damping [1/s] for a scheme of acceleration level that has none; 0: none. Without damping, the
-  /// self-motion of these schemes never stops. With 2, the usual value of this library, self-motion decays to 1 % in
-  /// 2.3 s.
+  /// Null-space damping [1/s] for a scheme of acceleration level that has none; 0: none. Without damping, self-motion
+  /// at acceleration level never stops. With 2, the usual value of this library, self-motion decays to 1 % in 2.3 s.
   Scalar null_damping = Scalar(2);
   /// Whether a stalled arm may move to a remembered posture from which the target is reachable (Recovery).
   bool recovery = true;
   /// Whether limits and stops preserve the first of several levels. A part of the limits is reserved for the first
   /// level: 0.7 of each bound on acceleration and 0.35 of each bound on velocity. stop() keeps the first level: its
-  /// references are held at rest, and the joints stop in its null space. This stop takes longer than a stop of each
-  /// joint by itself. A task that is farther than 0.001 characteristic lengths, or 0.001 rad, from its reference stays
-  /// at its current point. No effect on resolve_measured(), and on a tracker of a single level.
+  /// references are held at rest, and the joints stop in its null space. A stop that keeps the first level takes longer
+  /// than a stop of each joint by itself. A task that is farther than 0.001 characteristic lengths, or 0.001 rad, from
+  /// its reference stays at its current point. No effect on resolve_measured(), and on a tracker of a single level.
   bool keep_first_level = false;
   /// Largest age of the states that are passed to resolve_measured() [ticks]: the time from the measurement to the
   /// start of the tick in which the robot realises the command. Most robots need one to three ticks. 0: exact and

@@ -23,13 +23,14 @@ namespace fpbm {
 /// Moves an arm tick by tick with a scheme, within its joint limits and through singular postures, until the arm is at
 /// rest (docs/realtime.md).
 ///
-/// tick() integrates the tracker's own state by RK4. Its result is a command for an arm that accepts positions or
-/// velocities and follows them closely. resolve_measured() computes the acceleration for a measured state, for a torque
-/// controller. Never pass a measured state to tick(): the feedback would act twice, and noise would enter the command.
+/// tick() integrates the tracker's own state by RK4. The result of tick() is a command for an arm that accepts
+/// positions or velocities and follows them closely. resolve_measured() computes the acceleration for a measured state,
+/// for a torque controller. Never pass a measured state to tick(): the feedback would act twice, and noise would enter
+/// the command.
 ///
 /// If an RK4 step keeps every bound, the tick is this step. Otherwise the mean motion of the step is limited (Limiter).
-/// At acceleration level, a tick of several tasks has one acceleration, and no RK4 step. The same applies to a tick at
-/// whose start the limits do not admit the motion or damping is active.
+/// At acceleration level, a tick of several tasks has one acceleration, and no RK4 step. A tick at whose start the
+/// limits do not admit the motion or damping is active also has one acceleration.
 ///
 /// With a Guard<kLevel, N, Scalar> instead of Unguarded, the arm avoids self-collision and obstacles.
 template <typename Arm, typename Space, typename Scheme, typename Guard_ = Unguarded>

@@ -66,8 +66,8 @@ struct NoUndampedResult {
 };
 
 /// Result of the law for degree of redundancy 1 without damping. The result is computed before it is known whether
-/// damping acts. If damping does not act, this result is returned in all cases, so that a scheme with damping returns
-/// the same bits as a scheme without damping.
+/// damping acts. If damping does not act, the undamped result is returned in all cases, so that a scheme with damping
+/// returns the same bits as a scheme without damping.
 template <int N, typename Scalar>
 struct UndampedResult {
   Mask<Scalar> answered{false};  ///< u is the result without damping.

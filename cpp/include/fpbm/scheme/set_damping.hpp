@@ -31,8 +31,8 @@ inline constexpr bool
 /// postures. At acceleration level, if the null-space damping of the scheme is 0, sets the null-space damping. With
 /// lanes, call set_damping() for the scheme of each lane.
 ///
-/// A scheme type without these members needs an overload in its own namespace before it can be used in a Tracker or an
-/// AnyScheme:
+/// A scheme type without the members for damping needs an overload in its own namespace before it can be used in a
+/// Tracker or an AnyScheme:
 ///
 ///   void set_damping(MyScheme& scheme, const fpbm::DefaultDamping<>& damping);
 ///

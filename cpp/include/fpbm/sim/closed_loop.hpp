@@ -31,8 +31,8 @@ struct ClosedLoop {
     return x;
   }
 
-  /// dX/dt at X. Afterwards, kinematics, state and qdd are those of this evaluation. At velocity level, state.qd is the
-  /// result of the scheme, and qdd is not used.
+  /// dX/dt at X. Sets kinematics, state and qdd to the values at X. At velocity level, state.qd is the result of the
+  /// scheme, and qdd is not used.
   [[nodiscard]] Status evaluate(const Reference<Space, Scalar>& reference, const X& x, X& dx) noexcept {
     update(x);
     return resolve(reference, dx);
@@ -50,7 +50,7 @@ struct ClosedLoop {
   }
 
   /// Second part of evaluate(): dX/dt at the X of update(). sigma: null, or the address for a lower bound on σ_min(J)
-  /// of the first level. If the scheme does not provide this bound, the value at this address does not change.
+  /// of the first level. If the scheme does not provide the bound on σ_min(J), *sigma does not change.
   [[nodiscard]] Status resolve(const Reference<Space, Scalar>& reference, X& dx, Scalar* sigma = nullptr) noexcept {
     Status status;
     if constexpr (kSecondOrder) {

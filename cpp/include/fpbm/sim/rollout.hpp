@@ -46,11 +46,11 @@ template <typename Recorder, typename Sample>
 /// Velocity-level schemes integrate q (start.qd is not read), acceleration-level schemes integrate q and qd.
 /// `record(const Sample&)`, which must be noexcept, is called once per time of the grid. If `record` returns false, the
 /// motion ends at this sample, and the status is not a failure. Throws std::invalid_argument if the scheme or start
-/// does not suit the arm, the grid does not suit the path, or start is not finite. After these checks, nothing throws
-/// or allocates, and the result reports failures.
+/// does not suit the arm, the grid does not suit the path, or start is not finite. After the checks, nothing throws or
+/// allocates, and the result reports failures.
 ///
 /// With lanes, many motions run in parallel. The last q of a motion is NaN if its scheme fails or is damped, its tip
-/// leaves its path, or its steps are too long. Run this motion without lanes for its status and time.
+/// leaves its path, or its steps are too long. For its status and time, run a motion with NaN again without lanes.
 template <typename Arm, typename Path, typename Scheme, typename Recorder>
 RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Path& path, const Scheme& scheme,
                                                        const State<Arm::kDof, typename Arm::Scalar>& start,

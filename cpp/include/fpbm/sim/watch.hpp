@@ -53,8 +53,8 @@ class ErrorWatch {
   /// reference and of the error. If the target is unreachable, the fraction is 1. `fpbm_tests
   /// --gtest_filter='*Failure*:StepLength*'` passes with 0.01 to 0.1, and fails with 0.3.
   static constexpr auto kTolerance = static_cast<Number<Scalar>>(0.1);
-  /// Six times the truncation error θ⁵/120 of RK4 for a rotation by θ. The same tests pass with 0 to 0.1, and fail
-  /// with 1.
+  /// Six times the truncation error θ⁵/120 of RK4 for a rotation by θ. `*Failure*:StepLength*` passes with 0 to 0.1,
+  /// and fails with 1.
   static constexpr auto kTruncation = static_cast<Number<Scalar>>(0.05);
 
   bool started_ = false;
@@ -77,9 +77,9 @@ class TaskWatch {
       : before_(Reference<Space, Scalar>::hold(tip)) {}
 
   /// Whether the tip followed the reference in the step of h seconds to this sample. arrived: the reference at the end
-  /// of the step. reference: the reference at the start of the next step, for which qdd was computed. They differ at
-  /// the boundary between two pieces of a path. If the scheme was damped, the tip error may exceed the last error
-  /// without damping by at most kDampedSteps steps of the reference.
+  /// of the step. reference: the reference at the start of the next step, for which qdd was computed. The two
+  /// references differ at the boundary between two pieces of a path. If the scheme was damped, the tip error may exceed
+  /// the last error without damping by at most kDampedSteps steps of the reference.
   template <Level kLevel>
   [[nodiscard]] Mask<Scalar> follows_reference(const Kinematics<Space, N, Scalar>& kinematics,
                                                const Reference<Space, Scalar>& arrived,
@@ -134,8 +134,8 @@ class TaskWatch {
   /// Largest lag of a damped tip, in steps of the reference: 1 for a tip that stops, and the tolerance of ErrorWatch.
   static constexpr auto kDampedSteps = static_cast<Number<Scalar>>(1.1);
 
-  /// Smallest significant tip error, relative to the largest lever arm of a joint: 0.1 mm for a lever arm of 1 m. This
-  /// value defines the status kCoarse (rollout()).
+  /// Smallest significant tip error, relative to the largest lever arm of a joint: 0.1 mm for a lever arm of 1 m.
+  /// kAccuracy defines the status kCoarse (rollout()).
   static constexpr auto kAccuracy = static_cast<Number<Scalar>>(1e-4);
 
   Mask<Scalar> accurate_ = Mask<Scalar>(true);

@@ -70,7 +70,7 @@ class DampedGram {
   /// Factorises JC, given rows = (JC)ᵀ and an upper bound on the largest eigenvalue of W⁻¹ (for a pair: of the first
   /// W). Returns kDamped if Δ is not zero, or the reason for a missing factorisation. If J has a factorisation and no
   /// angular rows, and damping is on, sets *sigma, unless sigma is null, to the lower bound 1/√tr((JJᵀ)⁻¹) on σ_min(J).
-  /// This bound requires a pair, or W = I.
+  /// The bound on σ_min(J) requires a pair, or W = I.
   [[nodiscard]] Status factor(const Matrix<N, M, Value>& rows, Scalar inverse_bound,
                               [[maybe_unused]] Scalar* sigma = nullptr) noexcept {
     if constexpr (kTurns > 0) {
@@ -111,7 +111,7 @@ class DampedGram {
       if constexpr (kDamped) return of.damped_.solve(scaled);
       return of.factor_.coefficients(scaled);
     }
-    /// a − motion(coefficients(J C a)). If Δ = 0, this is the projection of a on the null space of JC.
+    /// a − motion(coefficients(J C a)), which for Δ = 0 is the projection of a on the null space of JC.
     [[nodiscard]] Vector<N, Value> project(const Vector<N, Value>& a) const noexcept {
       if constexpr (kDamped) {
         const Vector<N, Value> taken = motion(of.damped_.solve(transpose_times(of.rows_, a)));

@@ -23,8 +23,8 @@ inline constexpr Scalar kLevelRadius = Scalar(0.1);
 /// where Δ is the spectral function of LostDirections for ε. Δ is zero in directions in which A Z has a singular value
 /// σ ≥ ε. |w| ≤ 1.17 |r|/ε. w is continuous in L and r.
 ///
-/// If rows are dependent, L has fewer columns than rows, and w = (LᵀL + Δ)⁻¹ Lᵀ r. Both forms are equal, since L Lᵀ and
-/// LᵀL have the same non-zero eigenvalues.
+/// If rows are dependent, L has fewer columns than rows, and w = (LᵀL + Δ)⁻¹ Lᵀ r. Both forms of w are equal, since
+/// L Lᵀ and LᵀL have the same non-zero eigenvalues.
 template <int M, typename Scalar>
 class DampedLevel {
  public:

@@ -15,7 +15,7 @@ namespace fpbm {
 ///
 ///   d/dt ω⊥ = (J q̈ + J̇ q̇)⊥ − (aᵀω)(ω × a),   ω = J q̇.
 ///
-/// Lower levels determine the rotation about a. Without the last term, this rotation would disturb the motion of a.
+/// Lower levels determine the rotation about a, which would disturb the motion of a without the last term.
 /// columns, rates: angular rows of J and J̇. turning: ω × a.
 template <typename Scalar>
 [[nodiscard, gnu::always_inline]] inline Vector<3, Pair<Scalar>> without_spin(

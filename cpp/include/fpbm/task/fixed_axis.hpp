@@ -9,9 +9,9 @@
 
 namespace fpbm {
 
-/// Rotation about a fixed axis, represented by the coordinate of the rotation vector with the largest angle. The
-/// angles, velocities and accelerations of the other two coordinates are those of this coordinate times factors of
-/// magnitude ≤ 1. The other two coordinates therefore keep any bound that this coordinate keeps.
+/// Rotation about a fixed axis, represented by the coordinate of the rotation vector with the largest angle. The other
+/// two coordinates have the angle, velocity and acceleration of coordinate `largest`, times factors of magnitude ≤ 1.
+/// The other two coordinates therefore keep any bound that coordinate `largest` keeps.
 template <typename Scalar>
 struct FixedAxis {
   Eigen::Index largest;      ///< Coordinate of the largest angle.
@@ -45,7 +45,7 @@ template <typename Scalar>
     if (!(std::abs(w(i) - along * w(k)) <= kParallel * std::abs(w(k)))) return {};
     if (!(std::abs(wd(i) - along * wd(k)) <= kParallel * std::abs(wd(k)))) return {};
     axis.angles(i) = share;
-    // The round-off errors of the angles would accumulate. A correction of the same magnitude prevents this.
+    // The round-off errors of the angles would accumulate without a correction of the same magnitude.
     const Scalar corrected = along + std::clamp(away, -kCorrection, kCorrection);
     axis.motion(i) = std::clamp(corrected, Scalar(-1), Scalar(1));
   }

@@ -82,8 +82,8 @@ class LeastDuration {
   /// the slack.
   template <typename Sample>
   void search(const Sample& sample, std::size_t i, Scalar middle, Scalar half, int halvings, Scalar& longest) const {
-    // Must be below kSlack. Otherwise, an interval with a peak between both values would be halved kHalvings times.
-    // Values from 1 to just below kSlack need the same number of samples.
+    // Must be below kSlack. Otherwise, an interval with a peak between kSlack and kRaise would be halved kHalvings
+    // times. Values from 1 to just below kSlack need the same number of samples.
     constexpr Scalar kRaise = Scalar(1.004);
     const TipBounds<Scalar> here = peaks(sample(middle));
     if (required_duration(here) > kRaise * longest) longest = required_duration(here);

@@ -86,9 +86,9 @@ class Spline {
   using Block = Matrix<2, 2, Scalar>;
   using Rates = Matrix<2, M, Scalar>;  // Velocity and acceleration of a knot.
 
-  /// Computes the velocities and accelerations of the inner knots that make jerk and snap continuous. These conditions
-  /// are the normal equations of the least ∫|jerk|² dt: a block tridiagonal system, which is positive definite and
-  /// therefore needs no pivoting.
+  /// Computes the velocities and accelerations of the inner knots that make jerk and snap continuous. The continuity
+  /// conditions are the normal equations of the least ∫|jerk|² dt: a block tridiagonal system, which is positive
+  /// definite and therefore needs no pivoting.
   void solve() {
     const std::size_t inner = knots_.size() - 2;
     std::vector<Block> upper(inner);

@@ -11,10 +11,11 @@ namespace fpbm {
 
 /// Age of the newest stamp at each tick, on the clock of the stamps.
 ///
-/// This clock is estimated. The stamp with the smallest delay in a window of 5 to 10 s counts as not delayed, so that a
-/// drift of the clock causes an error of at most 10 s times the drift. Within the window, the estimated clock is slow
-/// by 1e-4, so that the estimate follows a clock with a smaller drift. Forward corrections of less than a tick, and all
-/// backward corrections, are smooth. A clock whose time at the first tick is known is not estimated.
+/// The clock of the stamps is estimated. The stamp with the smallest delay in a window of 5 to 10 s counts as not
+/// delayed, so that a drift of the clock causes an error of at most 10 s times the drift. Within the window, the
+/// estimated clock is slow by 1e-4, so that the estimate follows a clock with a smaller drift. Forward corrections of
+/// less than a tick, and all backward corrections, are smooth. A clock whose time at the first tick is known is not
+/// estimated.
 ///
 /// A stamp is rejected if it is not newer than the newest stamp, or too far ahead (follows()). If at least three stamps
 /// that follow each other are rejected over a time of at least a timeout, the clock of the sender counts as reset. The
@@ -40,7 +41,7 @@ class StampClock {
   [[nodiscard]] Scalar rate() const noexcept { return Scalar(1) - slow_ - correction() / dt_; }
 
   /// Processes a stamp. If the stamp is rejected, returns no value. Otherwise, returns the time since the newest stamp
-  /// [s], and this stamp becomes the newest stamp.
+  /// [s], and the accepted stamp becomes the newest stamp.
   [[nodiscard]] std::optional<Scalar> accept(double stamp) noexcept {
     if (!std::isfinite(stamp)) return {};
     if (!learns_) return hear_known(stamp);
@@ -112,7 +113,7 @@ class StampClock {
     return elapsed;
   }
 
-  /// Counts a stamp that does not follow the newest stamp. If the run of these stamps, or the silence before this
+  /// Counts a stamp that does not follow the newest stamp. If the run of rejected stamps, or the silence before the
   /// stamp, shows that the clock was reset, starts the estimate again and returns true.
   [[nodiscard]] bool set_anew(double stamp) noexcept {
     if (rejected_ > 0 && stamp > last_rejected_ && follows(stamp - first_rejected_, rejected_for_)) {

@@ -20,12 +20,12 @@ namespace fpbm {
 /// Each axis of the base frame moves to the target in minimum time within its bounds (TimeOptimalAxis), in the frame of
 /// the moving target. The reference does not overshoot a target at rest, and has no lag behind a target with constant
 /// velocity. The axes of an orientation are the three coordinates of the rotation vector to the target. From rest, or
-/// from a rotation about this vector, the orientation rotates about this vector (FixedAxis). The largest coordinate
-/// then becomes zero in minimum time, and the other two coordinates change in proportion. A target without a message
-/// for a timeout stops in minimum time within the bounds.
+/// from a rotation about the rotation vector to the target, the orientation rotates about this vector (FixedAxis). The
+/// largest coordinate then becomes zero in minimum time, and the other two coordinates change in proportion. A target
+/// without a message for a timeout stops in minimum time within the bounds.
 ///
-/// No bound is exceeded. After construction, no function allocates, throws or has an unbounded loop. Both statements
-/// hold for all pushed messages.
+/// For all pushed messages, no bound is exceeded, and after construction, no function allocates, throws or has an
+/// unbounded loop.
 template <typename Space, typename Scalar = double>
 class TargetFilter {
  public:

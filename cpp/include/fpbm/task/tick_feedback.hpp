@@ -9,13 +9,13 @@ namespace fpbm {
 ///   ẍ = s ẍ' + (1 − s) xdd + (k₁' 2(e' − e)/h + k₂'e')/(1 + g),   g = k₁'h/2 + k₂'h²/4,   s = g/(2 + 2g).
 ///
 /// e is the error x ⊖ f(q) at the start of the tick. e' and ẍ' are the error and the task acceleration in the middle of
-/// a tick that continues the acceleration of the previous tick. This is the implicit midpoint rule for
+/// a tick that continues the acceleration of the previous tick. The law is the implicit midpoint rule for
 /// ë + k₁'ė + k₂'e = 0 (docs/equations.md, A tick with one acceleration): a tick multiplies an error by
 /// (2 + λ'h)/(2 − λ'h), where λ'² + k₁'λ' + k₂' = 0. The gains
 ///
 ///   k₁' = k₁ − (k₁² − 3k₂)k₁h²/12,   k₂' = k₂ − (k₁² − 2k₂)k₂h²/12
 ///
-/// have λ' = λ − λ³h²/12 with λ² + k₁λ + k₂ = 0, so that this factor is e^(λh) up to terms of λ⁵h⁵.
+/// have λ' = λ − λ³h²/12 with λ² + k₁λ + k₂ = 0, so that a tick multiplies an error by e^(λh) up to terms of λ⁵h⁵.
 /// h = 0: ẍ = xdd + k₁ė + k₂e.
 ///
 /// In float, 2(e' − e)/h is mostly round-off error. Therefore, ė' is used instead, with s = (g − k₂'h²/8)/(1 + g).

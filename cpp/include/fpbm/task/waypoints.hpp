@@ -35,9 +35,9 @@ class Waypoints {
   Waypoints(const std::vector<Point>& points, const std::vector<Scalar>& times)
       : spline_(rows(points), required(times, points.size())) {}
 
-  /// Path with this duration [s], which is divided among the pieces in proportion to their lengths and angles.
-  /// Throws std::invalid_argument if duration is not positive and finite, there are fewer than two points, or two
-  /// successive points are equal.
+  /// Path with a duration [s] that is divided among the pieces in proportion to their lengths and angles. Throws
+  /// std::invalid_argument if duration is not positive and finite, there are fewer than two points, or two successive
+  /// points are equal.
   [[nodiscard]] static Waypoints lasting(const std::vector<Point>& points, Scalar duration) {
     validation::require_positive("duration", duration);
     std::vector<Scalar> times = time_fractions(points);
