@@ -83,7 +83,7 @@ class Joint(Data):
     name: str = parameter("Name; if empty, 'joint_1', 'joint_2' and so on.", default="")
     mimic: tuple[int, float, float] | None = parameter(
         "For a mimic joint: index of the leader in the chain, ratio and offset. The position is ratio times the "
-        "leader's position plus offset. A mimic joint is not a degree of freedom. Its bounds narrow the bounds of the "
+        "leader's position plus offset. A mimic joint is not a degree of freedom; its bounds narrow the bounds of the "
         "leader.",
         default=None,
     )

@@ -103,8 +103,8 @@ class Clearance(Data):
     ) -> Clearance:
         """Clearance of Robot.from_arms(arms, placements), with the capsules of the arms' clearances.
 
-        Capsule 'panda_link5' of arm 'left' becomes 'left_panda_link5'. The allowed pairs are those of the clearances
-        and those in `allowed`. An arm without a clearance has no capsules.
+        Capsule 'panda_link5' of arm 'left' becomes 'left_panda_link5'. The allowed pairs are the allowed pairs of the
+        clearances and the pairs in `allowed`. An arm without a clearance has no capsules.
 
         Raises ParameterError if a clearance belongs to no arm or has obstacles: give obstacles in the robot's base
         frame.

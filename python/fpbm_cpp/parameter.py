@@ -128,8 +128,8 @@ ANY = Parameter()
 def parameter(help: str = "", like: Parameter = ANY, *, default: Any = REQUIRED, **known: Any) -> Any:
     """Declare a parameter as a field of a data class: `radius: float = parameter("Radius.", POSITIVE, unit="m")`.
 
-    Keyword arguments are fields of Parameter; all other fields are those of `like`. If `like` has no usual value, the
-    usual value is the default.
+    Keyword arguments are fields of Parameter; all other fields are copied from `like`. If `like` has no usual value,
+    the usual value is the default.
     """
     usual = default if like.usual is REQUIRED else like.usual
     declared = replace(like, help=help or like.help, default=default, **{"usual": usual, **known})

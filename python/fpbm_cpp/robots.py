@@ -152,7 +152,7 @@ class Robot(Data, CoreRobot):
             'base_y' and 'base_yaw' without bounds. If the file has a floating joint, give 'fixed' or 'planar', which
             replaces the floating joint.
         locked : mapping, optional
-            Positions of joints that are fixed, by name [rad] or [m]; these are not joints of the robot.
+            Positions of joints that are fixed, by name [rad] or [m]; fixed joints are not joints of the robot.
         tips : iterable of str, optional
             Links that the robot moves. Joints that move none of these links are fixed at 0, or at the position in their
             range that is nearest to 0.

@@ -66,7 +66,7 @@ class FrameTask(Task):
 
 
 def check_rows(rows: Sequence[str] | None, all_rows: tuple[str, ...]) -> tuple[str, ...] | None:
-    """Selected rows as a tuple. Raises ParameterError unless they are rows of the task, each once."""
+    """Selected rows as a tuple. Raises ParameterError unless the rows are different rows of the task."""
     if rows is None:
         return None
     if isinstance(rows, str) or not isinstance(rows, Iterable) or not tuple(rows):

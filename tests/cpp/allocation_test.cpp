@@ -21,8 +21,8 @@
 #include "support/paper.hpp"
 #include "support/schemes.hpp"
 
-/// Rollouts and control loops allocate nothing, for every scheme and number of joints. Three watches check this. Each
-/// watch must detect a planted allocation.
+/// Rollouts and control loops allocate nothing, for every scheme and number of joints. Three watches count allocations.
+/// Each watch must detect a planted allocation.
 namespace fpbm::test {
 namespace {
 

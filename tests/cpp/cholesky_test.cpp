@@ -125,8 +125,8 @@ TEST_P(CholeskyOf, does_not_depend_on_scale) {
   for (const double scale : {1e-30, 1e-6, 1e6, 1e30}) EXPECT_TRUE(GetParam().factors(scale * A)) << scale;
 }
 
-/// Two matrices factorised together give bitwise the results of separate factorisations. They are rejected if either is
-/// rejected.
+/// Two matrices factorised together give bitwise the results of separate factorisations. The pair is rejected if either
+/// matrix is rejected.
 template <int M, typename Scalar>
 void expect_pair_to_agree() {
   using Square = Matrix<M, M, Scalar>;

@@ -182,8 +182,8 @@ TEST(NearPairs, are_those_of_the_distances_in_float) {
   expect_all_near_pairs<float>();
 }
 
-/// If keeps_margins() returns true, no sampled posture of the trajectory is closer than the margin. It returns true for
-/// at least 90 % of the trajectories without a sampled violation.
+/// If keeps_margins() returns true, no sampled posture of the trajectory is closer than the margin. keeps_margins()
+/// returns true for at least 90 % of the trajectories without a sampled violation.
 TEST(KeepsMargins, is_never_unsafe_and_rarely_conservative) {
   int sure = 0;
   int clear = 0;

@@ -218,7 +218,7 @@ INSTANTIATE_TEST_SUITE_P(every, DampedLevel, ::testing::ValuesIn(kKinds), [](con
   return name;
 });
 
-/// A posture task of all joints needs no factorisation. Its motion does not depend on the order of the rows.
+/// A posture task of all joints needs no factorisation, and its motion does not depend on the order of the rows.
 TEST(DampedLevels, of_a_posture_do_not_depend_on_the_order_of_rows) {
   constexpr Eigen::Index n = 7;
   for (std::uint32_t seed = 0; seed < 200; ++seed) {

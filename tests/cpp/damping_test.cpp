@@ -61,7 +61,7 @@ double distance_to_singular(const Situation& at) {
   return least_singular_value(even) / static_cast<double>(even.norm());
 }
 
-/// Δ / ε² by its definition. Its trace is the number of lost directions.
+/// Δ / ε² by its definition; its trace is the number of lost directions.
 RealMatrix lost_directions(const RealMatrix& J, double radius) {
   const Real edge = static_cast<Real>(radius) * J.norm();
   const auto [sigma, U] = spectrum(J);

@@ -263,7 +263,7 @@ TEST(Guard, avoids_a_moving_post) {
   }
 }
 
-/// Posts that cross the workspace anywhere except at the first axis do not touch an arm. Its hand has many capsules, so
+/// Posts that cross the workspace anywhere except at the first axis do not touch an arm. The hand has many capsules, so
 /// that more rows apply than a tick can use.
 TEST(Guard, avoids_posts_from_all_sides) {
   const Chain<> chain = presets::panda();

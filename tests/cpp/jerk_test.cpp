@@ -19,7 +19,7 @@ constexpr int kOpen = Eigen::Dynamic;
 constexpr double kTick = 1e-3;
 constexpr double kSlack = 1e-9;
 
-/// One joint with random bounds. Its acceleration needs 2 ms to 0.3 s from zero to its bound.
+/// One joint with random bounds. The acceleration needs 2 ms to 0.3 s from zero to its bound.
 template <typename Scalar>
 [[nodiscard]] JointLimits<1, Scalar> random_bounds(Random& random) {
   auto bounds = JointLimits<1, Scalar>::none(1);
@@ -105,8 +105,8 @@ TEST(Jerk, one_joint_keeps_all_bounds_for_any_desired_motion) {
   expect_one_joint_to_keep_its_bounds<Level::kVelocity>();
 }
 
-/// A joint that is always pushed toward its end comes to rest there. After braking starts, its velocity decreases
-/// monotonically.
+/// A joint that is always pushed toward its end comes to rest there. After braking starts, the velocity of the joint
+/// decreases monotonically.
 template <Level kLevel, typename Scalar>
 void expect_to_rest_at_the_end() {
   constexpr auto kH = static_cast<Scalar>(kTick);
@@ -218,7 +218,7 @@ template <int N>
   return most;
 }
 
-/// The last four commands. Their differences are the motion that a robot receives.
+/// The last four commands, whose differences are the motion that a robot receives.
 template <int N>
 class Commands {
  public:

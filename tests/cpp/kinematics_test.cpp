@@ -122,7 +122,8 @@ TEST_P(PlanarKinematics, has_J_and_Jd_as_derivatives) {
   });
 }
 
-/// Two adjacent entries of a vector, read and written together. Beyond its end, zero is read and nothing is written.
+/// Two adjacent entries of a vector, read and written together. Beyond the end of the vector, zero is read and
+/// nothing is written.
 template <int N, typename Scalar>
 void expect_neighbours() {
   Vector<N, Scalar> from(5);

@@ -5,7 +5,7 @@
 #include "support/random.hpp"
 #include "support/textbook.hpp"
 
-/// The lemmas of the paper, in extended precision. They check the textbook formulas, on which the other tests rely.
+/// The lemmas of the paper, in extended precision, check the textbook formulas, on which the other tests rely.
 namespace fpbm::test::lemma_laws {
 namespace {
 

@@ -115,7 +115,7 @@ struct Asked {
   const Eigen::Index n = u.size();
   const Eigen::VectorXd unit = (problem.upper - problem.lower) / 2.0;
   Eigen::MatrixXd all(0, n);
-  const auto add = [&](const Eigen::MatrixXd& rows) {  // Unit rows, so that one threshold applies to all.
+  const auto add = [&](const Eigen::MatrixXd& rows) {  // Unit rows, so that one threshold applies to all rows.
     for (Eigen::Index i = 0; i < rows.rows(); ++i) {
       const double length = rows.row(i).norm();
       if (length == 0.0) continue;
@@ -247,7 +247,7 @@ TEST(LevelSaturation, float_keeps_the_box) {
   }
 }
 
-/// A level that is not finite is omitted. The other levels are the same as without it.
+/// A level that is not finite is omitted, and does not change the other levels.
 TEST(LevelSaturation, a_level_that_is_not_finite_stops_alone) {
   Random random(3);
   Problem problem = random_problem(random, 7, 3, false);

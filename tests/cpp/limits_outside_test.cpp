@@ -7,16 +7,16 @@
 #include "support/arms.hpp"
 #include "support/compiled_tracker.hpp"
 
-/// A measured state may be beyond a bound. Then the joint returns as fast as its bounds on velocity and acceleration
-/// admit, and comes to rest on the bound or continues inside. The other joints continue the task.
+/// If a measured state is beyond a bound, the joint returns as fast as its bounds on velocity and acceleration admit,
+/// and comes to rest on the bound or continues inside. The other joints continue the task.
 namespace fpbm::test::limits_outside_laws {
 namespace {
 
 constexpr double kTick = 1e-3;
 
 /// Shortest time in which a joint returns to its bound from a distance y beyond, with a velocity `away` from the bound.
-/// The joint stops, accelerates toward the bound, cruises and brakes. It comes to rest on the bound, or passes the
-/// bound if it cannot stop in time.
+/// The joint stops, accelerates toward the bound, cruises and brakes. The joint comes to rest on the bound, or passes
+/// the bound if it cannot stop in time.
 [[nodiscard]] double least_time(double y, double away, double velocity, double acceleration) {
   double time = 0.0;
   if (away > 0.0) {
@@ -91,7 +91,7 @@ TEST(Outside, joints_return_as_fast_as_bounds_allow) {
 }
 
 /// After stop(), a joint beyond its bound comes to rest like the other joints, in the shortest time if measured states
-/// are exact. It does not move to its bound.
+/// are exact. The joint does not move to its bound.
 TEST(Outside, joints_stop_on_request) {
   const SerialArm<7> panda(panda_without_jerk());
   const JointLimits<7>& bounds = panda.limits();
@@ -124,7 +124,7 @@ TEST(Outside, joints_stop_on_request) {
   }
 }
 
-/// At a bound and slightly beyond it, the acceleration does not jump. It is continuous from inside to outside.
+/// At a bound and slightly beyond it, the acceleration does not jump: it is continuous from inside to outside.
 template <Level kLevel, typename Scalar>
 void expect_no_kick() {
   for (std::uint32_t seed = 0; seed < 1000; ++seed) {
@@ -153,8 +153,8 @@ TEST(Outside, no_acceleration_peak_occurs_at_a_bound) {
   expect_no_kick<Level::kVelocity, float>();
 }
 
-/// A joint that is pushed against its bound and measured with noise keeps its acceleration bound. Its deviation is as
-/// large as the noise.
+/// A joint that is pushed against its bound and measured with noise keeps its acceleration bound. The deviation from
+/// the bound is as large as the noise.
 TEST(Outside, noise_about_a_bound_keeps_the_acceleration_bound) {
   const SerialArm<7> panda(panda_without_jerk());
   const JointLimits<7>& bounds = panda.limits();

@@ -60,7 +60,8 @@ template <int N, typename Result>
 }
 
 /// Largest excess over the bounds on velocity and acceleration, by differences of the commanded positions of two ticks,
-/// the first of which starts at q, minus the round-off error of these differences. Negative if both bounds hold.
+/// the first of which starts at q, minus the round-off error of these differences. Negative if the bounds on
+/// velocity and acceleration hold.
 template <int N>
 [[nodiscard]] double violation_by_differences(const JointLimits<N>& bounds, const Vector<N>& q, const Vector<N>& before,
                                               const Vector<N>& now) {
@@ -225,7 +226,7 @@ TEST(Limits, hold_on_arms_without_redundancy) {
                                  narrow_limits<Eigen::Dynamic>(2, random), trials(125));
 }
 
-/// The last joint of the Panda rotates about the tip. It stays at rest, although the other joints are limited.
+/// The last joint of the Panda rotates about the tip, and stays at rest although the other joints are limited.
 TEST(Limits, do_not_drive_a_joint_that_cannot_move_the_tip) {
   constexpr int N = Eigen::Dynamic;
   const AnyArm<Position<3>> arm = any_arm(presets::panda());
@@ -245,8 +246,8 @@ TEST(Limits, do_not_drive_a_joint_that_cannot_move_the_tip) {
   EXPECT_LE(fastest, 1e-3);
 }
 
-/// A joint that is driven toward its end as hard as its box admits comes to rest there. After braking starts, its
-/// velocity decreases monotonically: no chatter.
+/// A joint that is driven toward its end as hard as its box admits comes to rest there. After braking starts, the
+/// velocity of the joint decreases monotonically: no chatter.
 TEST(Limits, bring_a_joint_to_rest_at_its_end_without_chatter) {
   auto bounds = JointLimits<1>::none(1);
   bounds.set(0, {-1.0, 1.0, 2.0, 10.0});
@@ -304,8 +305,8 @@ TEST(Limits, leave_a_viable_motion_from_every_viable_state) {
   expect_invariance<Level::kVelocity>();
 }
 
-/// A joint may start at rest on either end of its range. It is not pushed beyond the end or off it, for all units and
-/// ticks.
+/// A joint that starts at rest on either end of its range is not pushed beyond the end or off the end, for all units
+/// and ticks.
 template <Level kLevel, typename Scalar>
 void expect_rest_on_both_ends(const JointBounds<>& joint, double seconds) {
   auto bounds = JointLimits<1, Scalar>::none(1);

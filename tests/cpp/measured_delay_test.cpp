@@ -96,7 +96,7 @@ void expect_within(const JointLimits<kOpen>& bounds, const State<kOpen>& state, 
 /// Moves fast toward targets that jump, until stop(). Within one second after stop(), every acceleration is below 1 %
 /// of its bound.
 ///
-/// busiest: raised to the largest of these fractions.
+/// busiest: raised to the largest fraction of an acceleration bound.
 template <typename Space>
 void expect_to_stop(const presets::Preset& preset, int kind, int delay, int age, const Sensor& sensor,
                     double& busiest) {

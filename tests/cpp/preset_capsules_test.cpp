@@ -95,7 +95,7 @@ TEST(PresetCapsules, no_pair_overlaps_in_all_postures_and_none_at_home) {
   }
 }
 
-/// Capsules of adjacent links touch. With a gap at the joint, an obstacle could pass between them.
+/// Capsules of adjacent links touch. With a gap at the joint, an obstacle could pass between the links.
 TEST(PresetCapsules, neighbours_touch) {
   for (const Case& arm : every_preset()) {
     const Robot<kOpen> robot(arm.chain);

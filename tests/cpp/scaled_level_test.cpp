@@ -58,7 +58,7 @@ TEST(ScaledLevel, has_the_singular_values_of_its_docstring) {
   expect_scaled<Eigen::Dynamic, Eigen::Dynamic>(6, 24);
 }
 
-/// A diagonal level needs no factor. Its result does not depend on the order of the rows.
+/// A diagonal level needs no factor, and its result does not depend on the order of the rows.
 TEST(ScaledLevel, of_a_posture_does_not_depend_on_the_order_of_rows) {
   Random random(1);
   const Vector<7> entries = random.uniform(7, 0.5, 1.5);

@@ -236,7 +236,7 @@ TEST(Rotation, vector_and_matrix_are_inverse_to_each_other) {
       EXPECT_LE((R * r - r).norm(), 1e-14);
     }
   }
-  // At π, both signs are correct.
+  // At π, both signs of the rotation vector are correct.
   const Matrix<3, 3> half = rotation(Vector<3>(0.0, kHalfTurn, 0.0));
   EXPECT_NEAR(rotation_vector(half).cwiseAbs()(1), kHalfTurn, 1e-14);
 }

@@ -32,7 +32,8 @@ TEST(Spaces, difference_and_displace_are_inverse_to_each_other) {
   }
 }
 
-/// Near half a turn, the error is near π and along the axis, to the last digits. At π, its sign may change.
+/// Near half a turn, the error is near π and along the axis, to the last digits. At π, the sign of the error
+/// may change.
 TEST(Spaces, orientation_error_is_good_up_to_half_a_turn) {
   Random random(2);
   for (const double short_of : {1e-1, 1e-4, 1e-8, 1e-12}) {
@@ -41,7 +42,7 @@ TEST(Spaces, orientation_error_is_good_up_to_half_a_turn) {
       const Matrix<3, 3> R = rotation(Vector<3>(random.uniform(3, -1.8, 1.8)));
       const Transform<> x{Vector<3>::Zero(), rotation(Vector<3>((kPi - short_of) * axis)) * R};
       const Vector<3> e = Pose::difference<double>(x, {Vector<3>::Zero(), R}).tail<3>();
-      // Within round-off of π, both signs are the same rotation.
+      // Within round-off of π, both signs of e are the same rotation.
       const double sign = e.dot(axis) > 0.0 || short_of > 1e-10 ? 1.0 : -1.0;
       EXPECT_LE((e - sign * (kPi - short_of) * axis).norm(), 1e-13) << short_of;
       EXPECT_NEAR(e.norm(), kPi - short_of, 1e-14);

@@ -387,7 +387,7 @@ TEST(TargetFilter, does_not_overshoot) {
   }
 }
 
-/// Half a turn and more: each rotation is the smaller one.
+/// Half a turn and more: each rotation is in the shorter direction.
 TEST(TargetFilter, turns_in_the_shorter_direction) {
   Watched<PlanarPose, double> planar({0.0, 0.0, 3.0}, kBounds);
   planar.filter.push({0.0, 0.0, -3.0});
@@ -424,8 +424,8 @@ TEST(TargetFilter, does_not_treat_a_jump_as_a_velocity) {
   EXPECT_EQ(push(-0.8, 0.3), 0.0);               // A message after a long pause.
 }
 
-/// A learnt clock treats the least delayed stamp as not delayed, and follows a clock that drifts. Its error is at most
-/// 0.2 ms.
+/// A learnt clock treats the least delayed stamp as not delayed, and follows a clock that drifts. The error of the
+/// clock is at most 0.2 ms.
 TEST(StampClock, estimates_the_offset_from_the_least_delayed_stamp) {
   Random random(48);
   for (const double drift : {-5e-5, 0.0, 5e-5}) {

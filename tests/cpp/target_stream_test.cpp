@@ -238,7 +238,7 @@ TYPED_TEST(TargetStreams, a_clock_that_is_set_is_estimated_again) {
   }
 }
 
-/// After a silence, the clock of the sender continues or restarts. The stream is followed in both cases.
+/// After a silence, the stream is followed, whether the clock of the sender continues or restarts.
 TYPED_TEST(TargetStreams, a_pause_does_not_block) {
   for (const double step : {-1e5, -20.0, 0.0, 0.01, 5.0, 100.0}) {
     Stream<typename TypeParam::Space, typename TypeParam::Scalar> stream;

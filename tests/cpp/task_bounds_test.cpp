@@ -44,7 +44,7 @@ template <Level kLevel>
           Guard<kLevel, kOpen>(clearance)};
 }
 
-/// A frame on a link. Its pose is independent of the kinematics of the clearance.
+/// A frame on a link. The pose of the frame is independent of the kinematics of the clearance.
 struct Frame {
   LinkFrame<> frame;
   Chain<> chain;

@@ -62,7 +62,7 @@ TEST(Theorem1, is_true_at_every_instant) {
   }
 }
 
-/// Over a whole motion from a consistent start, both give the same result.
+/// Over a whole motion from a consistent start, (7) and (9) give the same result.
 template <typename Weights, typename Arm, typename Path>
 void expect_same_motion(const Arm& arm, const Path& path, const Weights& weights, Vector<Arm::kDof> q0) {
   constexpr int N = Arm::kDof;

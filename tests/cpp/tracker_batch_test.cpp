@@ -184,7 +184,7 @@ TYPED_TEST(TrackerBatchLaws, move_without_limits_like_single_trackers) {
   auto options = All::options();
   EXPECT_EQ(All::expect_agreement({Case::start(0.0), Case::start(0.1)}, 0.03, 50.0, 1e-12, options), Status::kOk);
   options.integral_gain = 0.5;
-  options.error_bound = 1e-5;  // Some errors exceed it.
+  options.error_bound = 1e-5;  // Some errors exceed the bound.
   EXPECT_EQ(All::expect_agreement({Case::start(0.0), Case::start(0.1)}, 0.03, 50.0, 1e-12, options), Status::kOk);
 }
 

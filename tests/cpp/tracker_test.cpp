@@ -95,7 +95,7 @@ template <typename Result>
          a.saturated == b.saturated && a.sigma == b.sigma;
 }
 
-/// For the class of the library. Its members are only looked up, not called.
+/// The members of the library's class are only looked up, not called.
 TEST(Tracker, is_noexcept) {
   using Own = Tracker<SerialArm<7>, Pose, AccelerationScheme<7>>;
   using Follower = PathFollower<AnyPath<Pose>>;

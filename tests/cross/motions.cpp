@@ -27,7 +27,7 @@ void roll(const std::string& name, const Arm& arm, const Path& path, const Schem
   print("rollout/" + name, result.status, result.last.q);
 }
 
-/// The same path by a tracker, with active limits.
+/// A whole path by a tracker, with active limits.
 template <typename Space, typename Arm, typename Path, typename Scheme>
 void follow(const std::string& name, const Arm& arm, const Path& path, const Scheme& scheme,
             const Vector<Arm::kDof, typename Arm::Scalar>& q) {

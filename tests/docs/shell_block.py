@@ -72,7 +72,7 @@ def check_cmake(arguments: list[str]) -> None:
 
 
 def known_target(name: str) -> None:
-    """Programs of ours are example_NAME, of examples/NAME.cpp."""
+    """A program of this project is example_NAME, from examples/NAME.cpp."""
     assert (ROOT / "examples" / f"{name.removeprefix('example_')}.cpp").is_file(), f"{name}: no such program"
 
 

@@ -1,4 +1,5 @@
-"""Programs of docs/coming_from.md, for other libraries and for this library. `make peers` installs and runs them.
+"""Programs of docs/coming_from.md, for other libraries and for this library. `make peers` installs and runs the
+programs.
 
 Each program runs in its own virtual environment in the folder FPBM_PEERS, because the requirements of the libraries
 conflict. PyKDL is from Debian. Without FPBM_PEERS, all tests are skipped.
@@ -41,7 +42,7 @@ print(json.dumps(np.asarray(q).tolist()))
 
 
 def programs(section: str) -> list[str]:
-    """Python blocks of a section of the page; those before the first section are this library's."""
+    """Python blocks of a section of the page; blocks before the first section are for this library."""
     parts = re.split(r"^## (.+)$", PAGE, flags=re.MULTILINE)
     text = dict(zip(parts[1::2], parts[2::2]))[section] if section else parts[0]
     return re.findall(r"^```python\n(.+?)^```", text, flags=re.MULTILINE | re.DOTALL)

@@ -36,7 +36,7 @@ cmake --build "$scratch/installed"
 grep -q "fpbm_DIR:PATH=$prefix" "$scratch/installed/CMakeCache.txt"
 "$scratch/installed/consumer"
 
-# The same by pkg-config.
+# The same program with flags from pkg-config.
 flags=$(PKG_CONFIG_PATH="$prefix/share/pkgconfig" pkg-config --cflags fpbm)
 # shellcheck disable=SC2086 # Several words.
 "$compiler" -std=c++17 -fsyntax-only "$consumer/main.cpp" $flags

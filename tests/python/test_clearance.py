@@ -67,7 +67,7 @@ def shifted(x: float) -> Array:
 
 
 class Coal:
-    """The same pairs of shapes, as Coal measures them."""
+    """Distances of the pairs of shapes of a clearance, by Coal."""
 
     def __init__(self, arm: fp.Arm, clearance: fp.Clearance) -> None:
         self.coal = pytest.importorskip("coal", reason="needs Coal: pip install coal")

@@ -2,8 +2,9 @@
 
 Coal has closed forms for two capsules, which lose digits if the capsules are short and nearly parallel, and for a
 capsule and a half-space. For a capsule and a box, Coal iterates (GJK, EPA) to a tolerance, and sometimes has no result
-if the two touch. Therefore, all pairs are compared with an enumeration of all features in extended precision. Pairs for
-which Coal agrees with this enumeration are also compared with Coal. Their number is printed and asserted.
+if the shapes touch. Therefore, all pairs are compared with an enumeration of all features in extended precision. Pairs
+for which Coal agrees with this enumeration are also compared with Coal. The number of these pairs is printed and
+asserted.
 """
 
 from __future__ import annotations
@@ -93,7 +94,7 @@ def segments(rng: np.random.Generator, n: int) -> Array:
 
 
 def near(rng: np.random.Generator, first: Array) -> Array:
-    """Segments near to others: parallel, crossing or touching, to 1e-18 and exactly; some far away."""
+    """Segments near other segments: parallel, crossing or touching, to 1e-18 and exactly; some far away."""
     n = len(first)
     start, displacement = np.hsplit(segments(rng, n), 2)
     angle = np.where(some(rng, 0.3, n), 0, power(rng, -18, -1, n))
@@ -288,7 +289,7 @@ def test_distances_and_normals_are_exact_and_agree_with_coal(program: Path, kind
         f"off by {worst['exact']:.1e} m at most, along the normal by {worst['gap']:.1e} m, "
         f"normals of {count['apart']} by {worst['normal']:.1e}; Coal is off by more than {TOLERANCE} in "
         f"{count['pairs'] - count['coal']} and in {count['apart'] - count['coal normal']} normals, "
-        f"from the others of Coal by {worst['coal']:.1e} m, {worst['coal normal']:.1e}"
+        f"from the other results of Coal by {worst['coal']:.1e} m, {worst['coal normal']:.1e}"
     )
     assert worst["exact"] <= TOLERANCE
     assert worst["gap"] <= TOLERANCE  # With the line above: no other vector has a larger gap, also in contact.

@@ -619,7 +619,7 @@ def test_ctrl_c_ends_the_viewer_without_an_error() -> None:
     out, err, code = interrupted(
         ["view", "panda", *QUICK, "--port", "0", "--no-browser"], ": Ctrl-C stops the server.", 1.0
     )
-    assert (code, err, out) == (0, "", "")  # Its address is printed once.
+    assert (code, err, out) == (0, "", "")  # The address of the page is printed once.
 
 
 @posix

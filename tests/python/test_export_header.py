@@ -366,9 +366,7 @@ def test_invalid_namespace_is_rejected(name: str) -> None:
 
 def test_source_is_escaped_in_its_comment() -> None:
     text = export_header([Joint()], np.eye(4), name="n", source="a\nb\r\u2028\u202ec\\ é")
-    assert text.startswith(
-        "// Written by fpbm-cpp export-header from a?b???c\\ é. Do not edit.\n#pragma"
-    )
+    assert text.startswith("// Written by fpbm-cpp export-header from a?b???c\\ é. Do not edit.\n#pragma")
 
 
 # The command
@@ -491,7 +489,8 @@ def test_capsules_of_a_file(arm: Path) -> None:
     result = call(arm, "--tip", "tip", "-o", "-", "--capsules")
     assert_rejected(
         result,
-        f"{arm}: has no <collision> geometry: must be on at least one link: add it, or give capsules to Clearance()",
+        f"{arm}: has no <collision> geometry: must be on at least one link: add <collision>, or give capsules to "
+        "Clearance()",
     )
     box = '<link name="tip"><collision><geometry><box size="0.1 0.2 0.5"/></geometry></collision></link>'
     arm.write_text(URDF.replace('<link name="tip"/>', box))

@@ -43,7 +43,8 @@ def joint_limits(element: str, attribute: str) -> np.ndarray:
 def derivative(t: np.ndarray, q: np.ndarray, order: int) -> np.ndarray:
     """Divided differences: without lost cycles, equal to the finite differences in libfranka.
 
-    Across lost cycles, each divided difference is a mean of finite differences. Therefore, the same bounds hold.
+    Across lost cycles, each divided difference is a mean of finite differences. Therefore, the bounds on finite
+    differences hold for divided differences.
     """
     for k in range(1, order + 1):
         q = k * np.diff(q, axis=0) / (t[k:] - t[:-k])[:, None]

@@ -27,7 +27,7 @@ from fpbm_cpp.io.urdf_shapes import Shape, read_shapes
 
 pytest.importorskip("trimesh")
 
-# The other robots by `make homes`.
+# `make homes` tests the other robots.
 EVERY_DAY = {"ur5e", "panda with its hand"}
 
 
@@ -59,9 +59,9 @@ class Other(NamedTuple):
 OTHERS = {
     "panda with its hand": Other("panda_description/urdf/panda.urdf", "panda_hand_tcp", None, FRANKA),
     "xarm7": Other("xarm_description/urdf/xarm7.urdf", "link_eef", None, [[0] * 7]),
-    # Its file's posture "arm_up": at zero the arm is folded onto itself, see below.
+    # Posture "arm_up" of the file: at zero the arm is folded onto itself, see below.
     "z1": Other("z1_description/urdf/z1.urdf", "gripperStator", None, [[0, 0.26178, -0.26178, 0, 0, 0]]),
-    # "arm_up" of its file, within the joints' ranges, and with all joints at half a turn.
+    # Posture "arm_up" of the file, within the joints' ranges, and with all joints at half a turn.
     "kinova": Other(
         "kinova_description/robots/kinova.urdf",
         "j2s6s200_end_effector",

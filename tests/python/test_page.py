@@ -269,7 +269,7 @@ def test_on_a_phone(page):
     page.set_viewport_size({"width": 390, "height": 844})
     page.reload()
     page.wait_for_function("window.fpbm")
-    eventually(page, lambda: number(page, "time") > 0.1)  # By its own clock.
+    eventually(page, lambda: number(page, "time") > 0.1)  # By the clock of the page.
     page.evaluate("fpbm.pause()")
     run(page, 0.1)
     assert page.evaluate("document.documentElement.scrollWidth") <= 390

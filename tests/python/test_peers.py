@@ -278,8 +278,8 @@ def test_a_position_is_the_linear_rows_of_a_pose(name):
             np.testing.assert_allclose(a, b, rtol=0, atol=1e-14)
 
 
-# URDFs in the PyPI package ManipulaPy, from several sources. Their accuracy is the accuracy of π in the file: the first
-# two files have twelve digits or more, the file of Kinova has 3.1416, and ur_description has 1.570796327.
+# URDFs in the PyPI package ManipulaPy, from several sources. The accuracy of a URDF is the accuracy of π in the file:
+# the first two files have twelve digits or more, the file of Kinova has 3.1416, and ur_description has 1.570796327.
 OTHERS = {
     "panda": ("franka_panda/panda.urdf", "panda_link8", 1e-10),
     "iiwa14": ("kuka_iiwa/iiwa14/iiwa14.urdf", "iiwa_link_ee_kuka", 1e-10),

@@ -131,7 +131,7 @@ def test_minimum_norm_velocities_have_no_null_space_component() -> None:
 def test_a_singular_posture_keeps_its_null_space_velocity() -> None:
     run = a_run()
     outstretched = replace(run, q=np.zeros((1, 4)), qd=np.array([[1.0, 0.0, 0.0, -1.0]]))
-    J = run.arm.jacobian(np.zeros(4))[1:]  # The other row is zero.
+    J = run.arm.jacobian(np.zeros(4))[1:]  # The first row is zero.
     expected = np.linalg.norm(outstretched.qd[0] - np.linalg.pinv(J) @ J @ outstretched.qd[0])
     assert plot.null_space_velocities(outstretched)[0] == pytest.approx(expected)
 

@@ -85,8 +85,8 @@ def test_report_holds_the_numbers(done: Reproduction, report: str) -> None:
         assert f"({name})" in report
     assert report.count(r"0.006216\*") == 1
     assert report.count(r"0.063234\*") == 1
-    assert "is a misprint; it is -0.006214 rad/s" in report
-    assert "is a misprint; it is 0.062036 rad/s" in report
+    assert "is a misprint; the velocity is -0.006214 rad/s" in report
+    assert "is a misprint; the velocity is 0.062036 rad/s" in report
     assert all(claim.evidence in report for claim in done.claims)
     assert all(line in report for line in done.summary)
     assert not re.search(r"\bnan\b|\bNone\b", report)

@@ -226,11 +226,11 @@ def test_planar_base(write) -> None:
             r"joint 'free' is floating: base= must be 'fixed' or 'planar', to replace it",
         ),
         (robot_text(link("a"), link("b"), joint("j", "a", "b", "fixed")), {}, "no joints move: must be 1 to 64"),
-        (robot_text(link("a"), link("b"), joint("j", "a", "b"), joint("k", "b", "a")), {}, "its links form a loop"),
+        (robot_text(link("a"), link("b"), joint("j", "a", "b"), joint("k", "b", "a")), {}, "links form a loop"),
         (
             robot_text(*(link(f"l{i}") for i in range(66)), *(joint(f"j{i}", "l0", f"l{i + 1}") for i in range(65))),
             {},
-            "65 joints move: must be 1 to 64; fix the others by locked= or tips=",
+            "65 joints move: must be 1 to 64; fix the other joints by locked= or tips=",
         ),
     ],
 )

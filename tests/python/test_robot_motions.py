@@ -74,7 +74,7 @@ def poses(q: Array, frame: str) -> Array:
 
 
 def test_each_task_follows_its_path(run: fp.Run) -> None:
-    """From the start of its frame to the end of the longest path."""
+    """From the start of the task's frame to the end of the longest path."""
     assert (run.t[-1], run.task, run.kind) == (2.5, "left", "pose")
     assert run.x.shape == (2501, 4, 4)
     for name in ("left", "right"):

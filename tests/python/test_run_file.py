@@ -149,7 +149,7 @@ def test_provenance(run, tmp_path):
     two = fp.load(tmp_path / "two.npz")
     assert two.provenance == {**one.provenance, "date": "then", "seed": [0, 1, 2]}
     for seed in (0.5, "seven", [1, 0.5]):
-        with pytest.raises(ValueError, match="must be a whole number, or several"):
+        with pytest.raises(ValueError, match="must be a whole number, or a list of whole numbers"):
             run.save(tmp_path / "one.npz", seed=seed)
     with pytest.raises(ValueError, match="note = 7: must be text"):
         run.save(tmp_path / "one.npz", note=7)
@@ -165,7 +165,7 @@ def test_numpy_reads_the_arrays(run, tmp_path):
 
 
 def test_a_file_is_replaced_atomically(run, tmp_path, monkeypatch):
-    file = tmp_path / "run"  # By this very name: no suffix is added.
+    file = tmp_path / "run"  # The file has this name: no suffix is added.
     run.save(str(file))
     before = file.read_bytes()
 

@@ -173,7 +173,7 @@ def test_a_motion_stops_and_resumes():
     stopped = loop.q
     ticks += play(loop, clock, 1)
     np.testing.assert_array_equal(loop.q, stopped)
-    loop.scheme = fpbm(7, joint_centring=1)  # It stays stopped.
+    loop.scheme = fpbm(7, joint_centring=1)  # The arm stays stopped.
     ticks += play(loop, clock, 0.2)
     np.testing.assert_array_equal(loop.q, stopped)
     loop.scheme = fpbm(7)

@@ -173,7 +173,7 @@ def test_bad_arguments(arm, circle, q0, change, words):
 
 
 def test_other_threads_run_during_a_simulation(arm, circle, q0):
-    """The interpreter's lock is released: two simultaneous simulations finish and agree with one alone."""
+    """The interpreter's lock is released: two simultaneous simulations finish and agree with a single simulation."""
     scheme = fp.FPBM(0.6, W, 1, 1)
     runs = [None, None]
 

@@ -1,4 +1,4 @@
-"""Stacks of tasks from Python: their references and bounds, and that one level is the tracker of that task."""
+"""Stacks of tasks from Python: references, bounds, and one level compared with the tracker of its task."""
 
 import pickle
 from dataclasses import replace
@@ -407,7 +407,7 @@ def test_invalid_references_have_no_effect(panda, balanced):
 
 @pytest.mark.parametrize("level", ["velocity", "acceleration"])
 def test_levels_are_reordered(panda, level):
-    """Of two conflicting tasks, the one on the higher level is done. Reordering keeps all bounds, also on jerk."""
+    """Of two conflicting tasks, the task on the higher level is done. Reordering keeps all bounds, also on jerk."""
     scheme = fp.WMVN(np.ones(7)) if level == "velocity" else fp.Balanced(0.6, np.ones(7), null_damping=2)
     stack = fp.Stack(fp.PositionTask(name="near"), fp.PositionTask(name="far"), fp.PostureTask(READY))
     tracker = fp.Tracker(panda, scheme, READY, stack=stack)
@@ -429,7 +429,7 @@ def test_levels_are_reordered(panda, level):
 
 
 def test_a_kept_stop_does_not_move_a_reordered_arm(panda, balanced):
-    """The level that becomes the first during a stop is far from its target, and stays where it is."""
+    """The level that becomes the first during a stop is far from its target; the arm does not move."""
     stack = fp.Stack(fp.PositionTask(name="near"), fp.PositionTask("panda_joint4", name="far"))
     tracker = fp.Tracker(panda, balanced, READY, stack=stack, keep_first_level=True)
     goals = {"near": tracker.tip["near"], "far": tracker.tip["far"] + np.array([0, 0.3, 0.1])}
@@ -461,7 +461,7 @@ def test_invalid_orders_have_no_effect(panda, balanced):
 
 @pytest.mark.parametrize("level", ["velocity", "acceleration"])
 def test_an_arm_continues_after_a_wall(panda, level):
-    """A wall for the elbow blocks the position task. Later, its target is reachable again. The cup stays upright."""
+    """A wall for the elbow blocks the position task. Later, the target is reachable again. The cup stays upright."""
     scheme = fp.WMVN(np.ones(7)) if level == "velocity" else fp.Balanced(0.6, np.ones(7), null_damping=2)
     stack = fp.Stack(fp.AxisTask(x=[0, 0, -1], name="upright"), fp.PositionTask(name="place"), fp.PostureTask(READY))
     wall = fp.TaskBounds(fp.PositionTask("panda_joint4", rows=("y",)), upper=0.02)

@@ -65,14 +65,14 @@ def narrow(arm, velocity):
 
 
 def same(a, b):
-    """The same sweep to the last bit."""
+    """Two sweeps are equal to the last bit."""
     np.testing.assert_array_equal(a.status, b.status)
     for name in FIGURES:
         assert getattr(a, name).tobytes() == getattr(b, name).tobytes(), name
 
 
 def expect_run(sweep, i, k, run):
-    """The key figures of motion i, k are those of this run."""
+    """Motion i, k of the sweep has the key figures of this run."""
     size = np.abs(run.qd).max(axis=1)
     assert sweep.status[i, k] is run.status.code
     assert sweep.time[i, k] == run.status.time
@@ -91,7 +91,7 @@ def expect_run(sweep, i, k, run):
 
 
 def expect_agreement(lanes, alone):
-    """The same sweep to round-off."""
+    """Two sweeps are equal up to round-off."""
     np.testing.assert_array_equal(lanes.status, alone.status)
     for name in FIGURES:
         differences = name in ("peak_acceleration", "final_acceleration")  # Differences of velocities, at velocity
@@ -363,7 +363,7 @@ def test_an_exception_of_progress_ends_the_sweep(arm):
 
 
 class Broken(Executor):
-    """Runs the first job, and fails at all others."""
+    """Runs the first job, and fails at all other jobs."""
 
     def __init__(self):
         self.futures = []
@@ -384,7 +384,7 @@ def test_an_exception_of_an_executor_is_raised(arm):
 
 
 class AtOnce(Executor):
-    """Runs each thing as it is submitted."""
+    """Runs each function when it is submitted."""
 
     def submit(self, function, /, *args, **kwargs):
         future = Future()
@@ -445,7 +445,7 @@ def test_ctrl_c_leaves_no_lock_acquired(arm):
 
 
 def interrupted(script, *arguments):
-    """Sends Ctrl-C a second after a script says 'begun': how many motions it says are done, and how soon [s]."""
+    """Sends Ctrl-C a second after a script prints 'begun': the printed number of motions, and the delay [s]."""
     command = [sys.executable, str(script), *map(str, arguments)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as child:
         assert child.stdout.readline() == "begun\n"

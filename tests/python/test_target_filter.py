@@ -94,7 +94,7 @@ def test_does_not_lag_behind_a_stream(learnt):
     rng = np.random.default_rng(7)
     stamps = np.arange(0, 5, 1 / 30)
     delays = rng.uniform(0, 0.02, stamps.size)
-    delays[0] = 0  # So that a clock that is learnt is right from the start.
+    delays[0] = 0  # So a learnt clock is correct from the start.
     kept = (rng.random(stamps.size) > 0.1) | (stamps == 0)
     seen = sorted(zip((stamps + delays)[kept], stamps[kept]))
     velocity = np.array([0.45, -0.2, 0.03])
@@ -159,7 +159,7 @@ def test_orientations_end_at_rest_without_chatter(bounds, longest):
         assert np.abs(xd).max() <= bounds[0] * (1 + 1e-12)
         assert np.abs(xdd).max() <= bounds[1] * (1 + 1e-12)
         assert np.abs(np.diff(xdd, axis=0)).max() <= bounds[2] * DT * (1 + 1e-9)
-        # Up and down twice for its own motion, and twice more for the effect of the other axes.
+        # Up and down twice for the motion of the axis, and twice more for the effect of the other axes.
         assert np.abs(np.diff(xdd, axis=0)).sum(axis=0).max() < 16 * bounds[1]
         away = (x != target).any(axis=(1, 2)) | (xd != 0).any(axis=1) | (xdd != 0).any(axis=1)
         assert not away[-1]

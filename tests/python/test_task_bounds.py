@@ -18,7 +18,7 @@ ARMS = ["panda", "ur5e", "gen3", "planar"]
 
 
 def arm_of(name):
-    """An arm, its limits, and a posture far from all of them."""
+    """An arm, its limits, and a posture far from all limits."""
     if name == "planar":
         limits = fp.JointLimits(lower=[-3.0] * 4, upper=[3.0] * 4, velocity=[2.0] * 4, acceleration=[10.0] * 4)
         return fp.PlanarArm([0.4, 0.3, 0.3, 0.2]), limits, np.array([0.3, 0.6, 0.9, -0.8])

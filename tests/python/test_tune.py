@@ -112,7 +112,7 @@ def test_objectives_need_not_be_positive(before, words):
 
 
 def same(a, b):
-    """The same tuning to the last bit."""
+    """Two tunings are equal to the last bit."""
     for name in ("value", "peak_velocity", "peak_acceleration", "error", "feasible"):
         assert getattr(a.trials, name).tobytes() == getattr(b.trials, name).tobytes(), name
     for name in KEYS:
@@ -194,7 +194,7 @@ def test_tuning_without_feasible_schemes_raises():
     with pytest.raises(RuntimeError, match="none of 9 schemes is feasible: 9 stopped early"):
         fp.tune(ARM, fp.Line([5, 0], 5.0), Q0, dt=0.05, trials=8)
     with pytest.raises(
-        RuntimeError, match=r"0 stopped early .* the least error of the others is .*, above tolerance = "
+        RuntimeError, match=r"0 stopped early .* the least error of the other schemes is .*, above tolerance = "
     ):
         quick(dt=0.25, tolerance=1e-12)
 
@@ -310,7 +310,7 @@ def test_interruption_within_an_objective():
         ({"search": {"k1": (0, 10)}}, r"search\['k1'\] = \(0, 10\): must be positive, since it is searched on a log"),
         ({"search": {"k1": 10}}, r"search\['k1'\] = 10: must be a pair \(low, high\)"),
         ({"search": {"k1": "low"}}, r"search\['k1'\] = 'low': must be a pair \(low, high\)"),
-        ({"search": {"weights": [(1, 2)] * 4}}, r"search\['weights'\].*: must be a pair \(low, high\), or 3 of them"),
+        ({"search": {"weights": [(1, 2)] * 4}}, r"search\['weights'\].*: must be a pair \(low, high\), or 3 pairs"),
         ({"search": {"weights": (1, np.inf)}}, r"search\['weights'\].*: must be finite"),
         ({"baseline": fp.FPBM(0.5, np.eye(4), 1, 1)}, "baseline = .*: W must be diagonal, of 4 weights"),
         ({"baseline": fp.FPBM(0.5, [1, 2, 3], 1, 1)}, "baseline = .*: W must be diagonal, of 4 weights"),

@@ -75,7 +75,7 @@ def moved(type: str, axis: Sequence[float], q: float) -> np.ndarray:
 
 
 def forward(joints: Sequence[Joint], tip: np.ndarray, q: Sequence[float]) -> np.ndarray:
-    """Tip of a chain at q, one number per joint that mimics none."""
+    """Tip of a chain at q, one number per joint that is not a mimic joint."""
     drives = iter(q)
     own = [next(drives) if joint.mimic is None else np.nan for joint in joints]
     T = np.eye(4)
@@ -306,7 +306,7 @@ def test_forward_kinematics_of_random_chains(pieces: list[Piece], write) -> None
     np.testing.assert_allclose(forward(joints, tip, q), expected, rtol=0, atol=1e-12)
 
 
-# Joints that mimic others
+# Mimic joints
 
 
 def four_joints(*parts: str) -> str:
@@ -416,7 +416,7 @@ def test_warning_points_to_the_caller(write) -> None:
 
 
 def test_held_joint_agrees_with_pinocchio(write) -> None:
-    """Pinocchio has the finger as a joint of its own, which stays at zero here; it knows no mimic of a mimic."""
+    """Pinocchio has the finger as a joint of its own, which stays at zero here, but supports no mimic of a mimic."""
     pin = pytest.importorskip("pinocchio")
     of_finger = '<mimic joint="finger" multiplier="-1" offset="0.72"/>'
     model = pin.buildModelFromXML(GRIPPER.replace('<mimic joint="follower" offset="0.7"/>', of_finger), mimic=True)
@@ -531,23 +531,23 @@ REJECTED = {
     # The tree.
     robot(): NO_LINKS,
     robot(link("tip", "b")): (
-        "links without a parent joint: 'tip', 'b': must be one, the root: connect the others by joints"
+        "links without a parent joint: 'tip', 'b': must be one link, the root: connect the other links by joints"
     ),
     robot(link(*map(str, range(15)))): (
-        f"links without a parent joint: {', '.join(repr(str(i)) for i in range(12))}, 3 more: must be one, the root: "
-        "connect the others by joints"
+        f"links without a parent joint: {', '.join(repr(str(i)) for i in range(12))}, 3 more: must be one link, the "
+        "root: connect the other links by joints"
     ),
     two_links(joint("a", "base", "tap")): f"joint 'a': child link 'tap' {NO_LINK}",
     two_links(joint("a", "bass", "tip")): f"joint 'a': parent link 'bass' {NO_LINK}",
     two_links(joint("a", "base", "tip"), joint("b", "base", "tip")): (
-        "link 'tip' is the child of two joints, 'a' and 'b': must be the child of one: correct <child> of one joint"
+        "link 'tip' is the child of two joints, 'a' and 'b': must be the child of one joint: correct one <child>"
     ),
     two_links(
         joint("a", "base", "tip"), joint("b", "tip", "base")
-    ): f"its links form a loop: 'base', 'tip', 'base': {TREE_OF}",
-    robot(link("tip"), joint("a", "tip", "tip")): f"its links form a loop: 'tip', 'tip': {TREE_OF}",
+    ): f"links form a loop: 'base', 'tip', 'base': {TREE_OF}",
+    robot(link("tip"), joint("a", "tip", "tip")): f"links form a loop: 'tip', 'tip': {TREE_OF}",
     two_links(joint("a", "base", "tip"), link("x", "y"), joint("b", "x", "y"), joint("c", "y", "x")): (
-        f"its links form a loop: 'x', 'y', 'x': {TREE_OF}"
+        f"links form a loop: 'x', 'y', 'x': {TREE_OF}"
     ),
     # The joints between base and tip.
     two_links(joint("a", "base", "tip", type="fixed")): (f"no joints move between base 'base' and tip 'tip': {COUNT}"),
@@ -656,7 +656,7 @@ def test_requires_only_the_standard_library(tmp_path: Path) -> None:
 
 
 def entities(n: int, use: str) -> str:
-    """Ten to the power of n of them (the billion laughs)."""
+    """Entities that expand to 10^n words (the billion laughs)."""
     nested = "".join(f'<!ENTITY e{i} "{f"&e{i - 1};" * 10}">' for i in range(1, n + 1))
     return f'<?xml version="1.0"?>\n<!DOCTYPE robot [<!ENTITY e0 "ha">{nested}]>{use.format(f"&e{n};")}'
 
@@ -778,7 +778,7 @@ def test_panda() -> None:
     joints, tip = read_urdf(ROBOTS / "panda_description/urdf/panda.urdf", "panda_hand")
     assert [j.name for j in joints] == [f"panda_joint{i}" for i in range(1, 8)]
     assert (joints[3].lower, joints[3].upper, joints[6].velocity) == (-3.0718, -0.0698, 2.61)
-    hand = transform([0.088, 0, 0.333 + 0.316 + 0.384 - 0.107], [pi, 0, pi / 4])  # From its data sheet.
+    hand = transform([0.088, 0, 0.333 + 0.316 + 0.384 - 0.107], [pi, 0, pi / 4])  # From the data sheet.
     np.testing.assert_allclose(forward(joints, tip, np.zeros(7)), hand, atol=1e-12)
 
 

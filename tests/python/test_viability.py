@@ -60,7 +60,7 @@ def their_bounds(states: Array, tick: float) -> Array:
     for i in range(len(states)):
         parent = model.addJoint(parent, pin.JointModelPX(), pin.SE3.Identity(), f"joint {i}")
     robot = tsid.RobotWrapper(model, tsid.RootJointType.FIXED_BASE_SYSTEM, False)
-    # The constructor doubles the tick, and setTimeStep() does not change all that it computes from it.
+    # The constructor doubles the tick, and setTimeStep() does not change all values that depend on the tick.
     task = tsid.TaskJointPosVelAccBounds("bounds", robot, tick / 2, False)
     lower, upper, velocity, acceleration, _, q, qd = np.ascontiguousarray(states.T)
     task.setPositionBounds(lower, upper)

@@ -237,7 +237,7 @@ def test_the_page_chooses_schemes_and_gains(viewer):
     controls._on_update(CLICK)
     assert repr(viewer.scheme) == repr(fp.WMVN([1, 2, 7.5, 4]))
     run = viewer.run
-    controls._on_update(CLICK)  # As it is.
+    controls._on_update(CLICK)  # Without a change.
     assert viewer.run is run
     controls._kind.value = "MAN"
     controls._on_update(SimpleNamespace(client="somebody", target=controls._kind))
@@ -541,7 +541,7 @@ endsolid box
 
 @pytest.fixture
 def file(tmp_path):
-    """A URDF file in the folder of a package, with its mesh in another."""
+    """A URDF file in the folder of a package, with its mesh in another folder."""
     (tmp_path / "made_up" / "urdf").mkdir(parents=True)
     (tmp_path / "made_up" / "meshes").mkdir()
     (tmp_path / "made_up" / "meshes" / "middle.stl").write_text(BOX)

@@ -40,7 +40,7 @@ def hand_motion(robot, q0, **how):
 
 @pytest.mark.parametrize("base", [None, "planar"])
 def test_the_model_has_the_frames_of_the_robot(tmp_path, base):
-    """Also its payload on a base that moves, and joints that it holds."""
+    """Also the payload of the robot on a base that moves, and held joints."""
     file, robot = torso(tmp_path, base, neck=0.4)
     rng = np.random.default_rng(1)
     server = viser.ViserServer("127.0.0.1", 0, verbose=False)
@@ -90,7 +90,7 @@ HANDS = ["left_tip", "right_tip"]
 
 
 def hands(robot=ROBOT, q0=READY, **how):
-    """A page whose handles are those that `fpbm-cpp servo --task left_tip --task right_tip` has."""
+    """A page with the handles of `fpbm-cpp servo --task left_tip --task right_tip`."""
     stack = fp.Stack([fp.PoseTask(name, name=name) for name in HANDS], fp.PostureTask(k1=4, k2=4))
     scheme = fp.Balanced(0.6, np.ones(robot.dof), null_damping=2)
     return Servo(robot, scheme, q0, **{"stack": stack, "port": 0, **how})
@@ -114,7 +114,7 @@ def test_each_hand_has_a_handle():
         handles["left_tip"]._gizmo.position = goals["left_tip"][:3, 3]
         servo.target = {"left_tip": goals["left_tip"]}
         wait_until(lambda: np.abs(servo.tip["left_tip"] - goals["left_tip"]).max() < 1e-3)
-        np.testing.assert_allclose(servo.tip["right_tip"], start, atol=1e-3)  # Keeps its own target.
+        np.testing.assert_allclose(servo.tip["right_tip"], start, atol=1e-3)  # The right tip keeps its own target.
         for name in HANDS:
             np.testing.assert_allclose(handles[name].target, goals[name], atol=1e-6)
             assert f"from {name} to handle" in servo._readout._table.content
@@ -133,7 +133,7 @@ def test_a_slowed_level_is_named():
 
 
 def test_relative_tasks_have_no_handle():
-    """Their targets are not in the base frame."""
+    """The targets of relative tasks are not in the base frame."""
     stack = fp.Stack(
         fp.RelativePoseTask(*HANDS, name="grasp"), fp.PoseTask("right_tip", name="tray"), fp.CenterOfMassTask()
     )

@@ -5,7 +5,7 @@
 A motion has targets that jump, conflict and are unreachable, on one to four levels that are switched and reordered
 meanwhile; at its end stop() brings the arm to rest. A rest has targets that do not change for 40 s. Fails if a motion
 exceeds a bound by more than 1e-9 or does not stop, or if more than 1 % of the rests move after 40 s. Third differences
-of q are printed only: round-off dominates them. They are checked by second differences of commanded velocities.
+of q are printed only: round-off dominates them. The jerk is checked by second differences of commanded velocities.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def arm_and_limits(rng: np.random.Generator) -> tuple[fp.SerialArm | fp.PlanarAr
 
 
 def some(rng: np.random.Generator, rows: tuple[str, ...]) -> list[str]:
-    """One row at least."""
+    """At least one of these rows."""
     return [str(row) for row in rng.choice(rows, rng.integers(1, len(rows) + 1), replace=False)]
 
 
@@ -89,7 +89,7 @@ def rows(task: Any) -> int:
 
 
 def start(rng: np.random.Generator) -> Start:
-    """A third begins with a joint on its bound."""
+    """Start of a motion: in a third of the motions, a joint is on its bound."""
     arm, limits = arm_and_limits(rng)
     q0 = limits.lower + rng.uniform(0.15, 0.85, arm.dof) * (limits.upper - limits.lower)
     if rng.random() < 1 / 3:

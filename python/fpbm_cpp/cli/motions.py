@@ -93,7 +93,7 @@ def compare(request: Request, schemes: str | None, out: Path | None, dark: bool)
     motions = {kind: request.motion(kind) for kind in kinds}
     with request.plain():
         runs = {kind: motion.run() for kind, motion in motions.items()}
-    chosen = motions.get(request.scheme, motions[kinds[-1]])  # Usually, its table has the options of all schemes.
+    chosen = motions.get(request.scheme, motions[kinds[-1]])  # Usually, this motion has the options of all schemes.
     request.say(chosen, scheme=False)
     remarks: dict[str, list[str]] = {}
     for kind, run in runs.items():

@@ -29,7 +29,7 @@ dark_option = click.option("--dark", is_flag=True, help="Figures on a dark backg
 
 
 class Plain(click.Command):
-    """Lists its options by topic, prints a warning or an error as one line, and exits with status 130 after Ctrl-C."""
+    """Lists the options by topic, prints a warning or an error as one line, and exits with status 130 after Ctrl-C."""
 
     def invoke(self, context: click.Context) -> Any:
         try:

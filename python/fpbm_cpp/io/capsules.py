@@ -51,9 +51,9 @@ def capsules_of(
     [rad] or [m], the capsules keep the margin if clear() finds capsules that keep the margin, at most 8 per link.
     Allowed pairs of names are excepted.
 
-    Without tip, the joints are those of Robot.from_urdf(path, base=base, locked=locked, tips=tips), which fixes all
-    other joints. With tip, the joints are those of SerialArm.from_urdf(path, tip, base). Each link, also a tool or a
-    finger beyond the tip, belongs to the last joint between base and tip that moves the link. If no joint between base
+    Without tip, the joints are as in Robot.from_urdf(path, base=base, locked=locked, tips=tips), which fixes all other
+    joints. With tip, the joints are as in SerialArm.from_urdf(path, tip, base). Each link, also a tool or a finger
+    beyond the tip, belongs to the last joint between base and tip that moves the link. If no joint between base
     and tip moves the link, the link belongs to the base. Joints that are not between base and tip are fixed at zero, so
     the capsules of a gripper or of another arm are valid for that posture only. Visual geometry is not read: a link
     without collision geometry has no capsule.
@@ -71,7 +71,7 @@ def capsules_of(
     joints, places = _joints(path, tip, base, locked, tips)
     shapes = read_shapes(path)
     if not shapes:
-        remedy = "must be on at least one link: add it, or give capsules to Clearance()"
+        remedy = "must be on at least one link: add <collision>, or give capsules to Clearance()"
         raise ValueError(f"{os.fsdecode(path)}: has no <collision> geometry: {remedy}")
     names = sorted(shapes, key=lambda link: places[link][0])
     links = []

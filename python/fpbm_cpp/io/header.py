@@ -40,10 +40,10 @@ def export_header(
     """Text of a C++ header that constructs an arm, so that a program needs neither a parser nor a file.
 
     The header has kDof, kJointNames, chain() and arm(), which returns an fpbm::CoupledArm if the arm has mimic joints,
-    otherwise an fpbm::SerialArm. It has capsules() if capsules are given, also for an empty list. name: the namespace,
-    for example 'my::arm'. tip: frame of the tip in the frame of the last joint, shape (4, 4) [m]. source: origin of the
-    arm, for a comment. scalar: 'double', or 'float' for a processor without double. Raises ParameterError if the name
-    is not a valid namespace.
+    otherwise an fpbm::SerialArm. The header has capsules() if capsules are given, also for an empty list. name: the
+    namespace, for example 'my::arm'. tip: frame of the tip in the frame of the last joint, shape (4, 4) [m]. source:
+    origin of the arm, for a comment. scalar: 'double', or 'float' for a processor without double. Raises ParameterError
+    if the name is not a valid namespace.
     """
     drives = _drives(joints, name, scalar)
     kind = "SerialArm" if drives == len(joints) else "CoupledArm"
@@ -75,7 +75,7 @@ def export_tree(robot: Robot, *, name: str, source: str = "", scalar: str = "dou
     """Text of a C++ header that constructs a robot, so that a program needs neither a parser nor a file.
 
     The header has kDof, kJointNames, tree(), with the masses of the links and all frames of the robot, and robot().
-    name, source, scalar and errors are those of export_header().
+    name, source, scalar and errors are as in export_header().
     """
     joints = [each.joint for each in robot.joints]
     drives = _drives(joints, name, scalar)

@@ -17,7 +17,7 @@ MAX_BYTES = 256 * 2**20
 def find_mesh(urdf: Path, name: str) -> Path | None:
     """The file of a mesh that a URDF file names, or None.
 
-    A package is a folder above the URDF file or in ROS_PACKAGE_PATH, or a folder in one of these.
+    A package is a folder above the URDF file or in ROS_PACKAGE_PATH, or a subfolder of these folders.
     """
     place = name.partition("://")[2] or name
     inside = place.partition("/")[2] if name.startswith("package://") else place

@@ -74,7 +74,7 @@ def _provenance(run: Run, note: Any, seed: Any) -> dict[str, Any]:
         try:
             seed = [operator.index(one) for one in seed] if isinstance(seed, Iterable) else operator.index(seed)
         except TypeError:
-            raise ValueError(f"seed = {seed!r}: must be a whole number, or several") from None
+            raise ValueError(f"seed = {seed!r}: must be a whole number, or a list of whole numbers") from None
     origin = run.provenance or {
         "date": datetime.now(timezone.utc).isoformat(timespec="seconds"),
         "fpbm_cpp": __version__,

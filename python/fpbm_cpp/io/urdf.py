@@ -67,17 +67,17 @@ def tree_of(links: Iterable[str], joints: Iterable[UrdfJoint]) -> Tree:
         other = above[joint.child]
         if other is not None:
             twice = f"is the child of two joints, {other.name!r} and {joint.name!r}"
-            raise ValueError(f"link {joint.child!r} {twice}: must be the child of one: correct <child> of one joint")
+            raise ValueError(f"link {joint.child!r} {twice}: must be the child of one joint: correct one <child>")
         above[joint.child] = joint
     try:
         TopologicalSorter({link: (joint.parent,) for link, joint in above.items() if joint}).prepare()
     except CycleError as error:
         remedy = "must form a tree: remove a joint of the loop"
-        raise ValueError(f"its links form a loop: {listed(error.args[1])}: {remedy}") from None
+        raise ValueError(f"links form a loop: {listed(error.args[1])}: {remedy}") from None
     roots = [link for link, joint in above.items() if joint is None]
     if len(roots) != 1:
-        remedy = "connect the others by joints" if roots else "add the links of the robot"
-        raise ValueError(f"links without a parent joint: {listed(roots)}: must be one, the root: {remedy}")
+        remedy = "connect the other links by joints" if roots else "add the links of the robot"
+        raise ValueError(f"links without a parent joint: {listed(roots)}: must be one link, the root: {remedy}")
     return above
 
 

@@ -62,7 +62,7 @@ def read_robot(path: str) -> tuple[list[str], list[UrdfJoint]]:
 
 
 def read_robot_with_masses(path: str) -> tuple[list[str], list[UrdfJoint], dict[str, Mass]]:
-    """The result of read_robot(), and the masses of the links that have one."""
+    """The result of read_robot(), and the masses of the links with a mass."""
     robot = read_xml(path, INERTIALS)
     links, joints = _links_and_joints(robot)
     masses: dict[str, Mass] = {}

@@ -31,7 +31,7 @@ class Shape:
     """A body in a link's frame: the faces between its edges, and balls.
 
     edges: shape (E, 2, 3). centers and radii of the balls: (B, 3) and (B,). cylinder: radius, length and frame if the
-    body is a single cylinder; its edges are those of a prism around the cylinder. All in metres.
+    body is a single cylinder; edges then form a prism around the cylinder. All in metres.
     """
 
     edges: Array = field(default_factory=lambda: np.zeros((0, 2, 3)))

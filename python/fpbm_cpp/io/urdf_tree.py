@@ -140,7 +140,7 @@ def _robot(
         places[joint.child] = (number, frame)
     if not 1 <= len(joints) <= MAX_DOF:
         raise ValueError(
-            f"{len(joints) or 'no'} joints move: must be 1 to {MAX_DOF}; fix the others by locked= or tips="
+            f"{len(joints) or 'no'} joints move: must be 1 to {MAX_DOF}; fix the other joints by locked= or tips="
         )
     moving = {joint.name for joint in joints}
     coupled = coupled_joints(joints, {name: follow for name, follow in follows.items() if name in moving})

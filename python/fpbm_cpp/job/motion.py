@@ -168,7 +168,7 @@ def filled(job: Table, arm: Arm | Robot) -> Table:
     path = job.get("path", {"kind": FREE["path"]})
     pieces = {task: _filled_paths(each, arm) for task, each in _by_task(path).items()}
     pieces = pieces if is_by_task(path) else pieces[""]
-    gains = {"k1": 0.0, "k2": 0.0} if "task" in job else {}  # The gains are those of the tasks.
+    gains = {"k1": 0.0, "k2": 0.0} if "task" in job else {}  # Each task has its own gains.
     scheme = dict(job.get("scheme", {"kind": FREE["scheme"]}))
     gains = {key: gain for key, gain in gains.items() if key in known("scheme", scheme.get("kind"))}
     scheme = _filled("scheme", {**gains, **scheme})
@@ -276,7 +276,8 @@ def ready(arm: Arm | Robot, task: str, stack: Stack | None = None) -> list[float
 def _jacobians(arm: Arm | Robot, q: Array, task: str, stack: Stack | None) -> Iterator[tuple[Jacobian, Any]]:
     """Jacobians that must not be singular, of the tip or of each frame of a robot's tasks, and their joints.
 
-    The joints of a frame are the joints that move only this frame; if these are fewer than six, all that move it.
+    The joints of a frame are the joints that move only this frame or, if these joints are fewer than six, all joints
+    that move the frame.
     """
     if not isinstance(arm, Robot):
         yield lambda q: arm.jacobian(q, task=task), np.arange(arm.dof)
@@ -304,7 +305,7 @@ def _bent(limits: JointLimits, middle: Array, jacobian: Jacobian, columns: Any) 
 
 
 def read_job(file: str | os.PathLike[str]) -> Table:
-    """Content of a TOML file, unchecked. File names in it are relative to its folder. Raises JobError or OSError."""
+    """Content of a TOML file, unchecked. File names are relative to the file's folder. Raises JobError or OSError."""
     try:
         table: Table = tomlkit.parse(FilePath(file).read_bytes()).unwrap()
     except (TOMLKitError, UnicodeDecodeError) as error:

@@ -288,8 +288,8 @@ class Run:
     def to_xarray(self) -> xr.Dataset:
         """Dataset over time, joint and axis, with units as attributes. Needs the extra 'data'.
 
-        Variables q, qd, qdd, x, x_ref, error; for a pose, orientation (a quaternion) or angle, the same with _ref, and
-        orientation_error; scale and saturated within limits, and clearance.
+        Variables q, qd, qdd, x, x_ref, error; for a pose, orientation (a quaternion) or angle, orientation_ref
+        or angle_ref, and orientation_error; scale and saturated within limits, and clearance.
         """
         from ..io.tables import to_xarray
 

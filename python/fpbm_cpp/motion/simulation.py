@@ -74,7 +74,7 @@ def simulate(
     task : str
         'position' (default), or 'pose' to track the tip's orientation too. For a stack: the name of the task that
         follows the path, which is optional if only one task is a position or a pose. For several paths: the name of
-        the task of the run's x, x_ref and error; default: the first.
+        the task of the run's x, x_ref and error; default: the first task.
     stack : Stack, optional
         Several tasks in strict priority. The path is a displacement from the start of one task; the other tasks have
         their targets x or q. Directions that are nearly singular or in conflict with higher levels are damped.
@@ -121,7 +121,7 @@ def track(
 
     A Tracker moves the arm: every joint keeps its bounds, the motion is damped near singular postures, and the
     motion never stops early. Sample k has the state and the tip's error at t_k. The mean acceleration, the task scale
-    and the joints on a bound are those of the tick that starts at t_k. The status is the worst of all ticks: OK,
+    and the joints on a bound belong to the tick that starts at t_k. The status is the worst of all ticks: OK,
     DAMPED, SLOWED, BLOCKED or STALLED; without damping, the status may be SINGULAR, if the arm brakes at a singular
     posture. Raises ValueError as simulate() does, and if a limit is missing, or if the start violates a limit or the
     clearance.

@@ -147,7 +147,7 @@ def sweep(
     q0s : array_like, shape (n,) or (K, n)
         Joint positions at the start [rad], one row per start; all motions start at rest.
     limits : JointLimits, optional
-        Limits that every motion keeps; arm.limits are those of the arm. Default: none.
+        Limits that every motion keeps; arm.limits are the limits of the arm. Default: no limits.
     error_bound, integral_gain, integral_bound, stall_time, singular_radius, singular_brake, null_damping : float
         As for Tracker; these options need limits.
     executor : concurrent.futures.Executor, optional

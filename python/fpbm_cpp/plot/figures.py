@@ -21,7 +21,7 @@ ROW, COMPARED_ROW, SLIDE = 1.45, 1.75, 4.0  # [in]
 def plot_run(
     run: Run, title: str | None = None, panels: str | Sequence[str] | None = None, *, dark: bool = False
 ) -> Figure:
-    """Figure of a run, up to its end: the arm on the left, the first panels beside it, the others below it.
+    """Figure of a run, up to its end: the arm on the left, the first panels beside the arm, the other panels below.
 
     The text is 9 points high. The figure is two columns of a paper wide, or one column for few panels without an arm.
     The default title has the scheme and the path. panels are names from PANELS; default: all except the components of

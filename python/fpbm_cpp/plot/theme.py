@@ -13,7 +13,7 @@ OKABE_ITO = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "
 DASHES = ("-", "--", ":", "-.")
 
 TEXT = 9.0  # [pt]
-COLUMN, PAGE = 3.5, 64 / 9  # Width of one column of a journal, and of nearly two [in].
+COLUMN, PAGE = 3.5, 64 / 9  # Width of one column of a journal, and of nearly two columns [in].
 TITLE_ROW = 0.17  # Height of a line of the title [in].
 DPI = 270  # A page is 1920 pixels wide.
 LINE = 1.4  # [pt]
@@ -33,7 +33,7 @@ class Theme(NamedTuple):
     fade: Colormap = LinearSegmentedColormap.from_list("fade", ["#C9DDF0", "#5BA3D0", "#08306B"])
 
     def styles(self) -> Iterator[tuple[str, str]]:
-        """Colour and dash of each line: 28 different pairs. Successive lines differ in both, also in grey print."""
+        """Colour and dash of each line: 28 pairs. Successive lines differ in colour and dash, also in grey print."""
         return zip(cycle(self.lines), cycle(DASHES))
 
 

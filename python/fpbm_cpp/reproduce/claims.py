@@ -41,7 +41,7 @@ def _of_figures(paper: Paper, fpbm: FPBM, results: Sequence[Result]) -> Iterator
         _verdict(bool(man.max() > 10 * ours.max()) and man.argmax() == len(man) - 1 > ours.argmax()),
         f"Circle, the same RK4 with {len(man) - 1} steps (dt = {COARSE} s): MAN's error reaches {man.max():.1e} m, "
         f"{man.max() / ours.max():.0f} times FPBM's {ours.max():.1e} m. At T, MAN's error is {man[-1] / man.max():.0%} "
-        f"of its largest, FPBM's {ours[-1] / ours.max():.0%}. After {HOLD:g} s more at the target, MAN's error is "
+        f"of its maximum, FPBM's {ours[-1] / ours.max():.0%}. After {HOLD:g} s more at the target, MAN's error is "
         f"{man_held:.1e} m, FPBM's {ours_held:.1e} m. At 1 kHz, the largest errors are {man_fine:.1e} m and "
         f"{ours_fine:.1e} m.",
     )
@@ -98,8 +98,8 @@ def _of_remarks(paper: Paper, fpbm: FPBM, results: Sequence[Result]) -> Iterator
         "FPBM's tip error is about 1e-5 m",
         _verdict(bool(ours.max() > 0.1 * printed.min())),
         f"The printed errors, {printed.min():.1e} to {printed.max():.1e} m, are the tolerance of the paper's variable-"
-        f"step solver: RK4 at 1 kHz gives {ours.min():.1e} to {ours.max():.1e} m. They contain no "
-        "information on α or W.",
+        f"step solver: RK4 at 1 kHz gives {ours.min():.1e} to {ours.max():.1e} m. The printed errors "
+        "contain no information on α or W.",
     )
 
 
@@ -110,7 +110,7 @@ def _ours(paper: Paper, fpbm: FPBM, results: Sequence[Result]) -> Iterator[Claim
     runs = chained(paper, replace(damped, rest_posture=paper.q0, null_stiffness=1.0))
     ends = [float(np.abs(b.q[-1] - a.q[-1]).max()) for a, b in pairwise(runs)]
     yield Claim(
-        "Null-space damping brings the joints to rest and does not change the task (ours)",
+        "Null-space damping brings the joints to rest and does not change the task (not in the paper)",
         _verdict(moved < 0.01 and max(ends) < 1e-4),
         f"With null_damping = 2 s⁻¹, the joints move by {moved:.4f} rad in the same {HOLD:g} s. With the rest posture "
         f"q(0) too (null_stiffness = 1 s⁻²), circle 2 ends {ends[0]:.1e} rad from circle 1, and circle 3 "
@@ -127,7 +127,7 @@ def _ours(paper: Paper, fpbm: FPBM, results: Sequence[Result]) -> Iterator[Claim
     coarse = {name: paper.simulate("circle", scheme, dt=COARSE) for name, scheme in schemes.items()}
     man, feedback, balance, _ = coarse.values()
     yield Claim(
-        "Feedback alone bounds the tip error, the balance alone lowers the final joint velocity (ours)",
+        "Feedback alone bounds the tip error, the balance alone lowers the final joint velocity (not in the paper)",
         _verdict(feedback.max_error() < man.max_error() / 10 and _speed(balance) < _speed(man) / 10),
         f"Largest tip error and norm of the final joint velocity, circle, dt = {COARSE} s. "
         f"{'; '.join(f'{name}: {run.max_error():.1e} m, {_speed(run):.3f} rad/s' for name, run in coarse.items())}.",
@@ -137,7 +137,7 @@ def _ours(paper: Paper, fpbm: FPBM, results: Sequence[Result]) -> Iterator[Claim
     alphas, speeds, peaks = zip(*sorted((r.case.fpbm["alpha"], _speed(r.run), _peak(r.run)) for r in rows))
     final, peak = (", ".join(f"{v:.3f}" for v in values) for values in (speeds, peaks))
     yield Claim(
-        "A larger alpha lowers the final joint velocity and raises the peak (ours)",
+        "A larger alpha lowers the final joint velocity and raises the peak (not in the paper)",
         _verdict(bool(np.all(np.diff(speeds) < 0) and np.all(np.diff(peaks) > 0))),
         f"Table 1, α = {', '.join(map(str, alphas))}: norm of the final joint velocity {final} rad/s, peak velocity of "
         f"any joint {peak} rad/s.",

@@ -106,12 +106,13 @@ def summary(results: Sequence[Result]) -> list[str]:
     fpbm, man = (max(r.from_printed or 0.0 for r in results if bool(r.case.fpbm) is kind) for kind in (True, False))
     errors = [r.run.max_error() for r in results]
     return [
-        f"Independent solution (DOP853, rtol 1e-12): {len(results)} cases, largest difference {largest:.1e} rad or "
-        f"rad/s; they {'agree' if largest <= TOLERANCE else 'DO NOT AGREE'} to {TOLERANCE:.0e}.",
+        f"Independent solution (DOP853, rtol 1e-12): {len(results)} cases "
+        f"{'agree' if largest <= TOLERANCE else 'DO NOT AGREE'} to {TOLERANCE:.0e}, with a largest difference of "
+        f"{largest:.1e} rad or rad/s.",
         f"Printed final joint velocities: FPBM agrees to {fpbm:.1e} rad/s, MAN to {man:.1e} rad/s (MAN amplifies the "
         f"error of the paper's solver), without {sum(bool(r.case.misprinted_joint) for r in results)} misprints.",
-        f"The printed tip errors, about 1e-5 m, are the tolerance of the paper's variable-step solver; ours, "
-        f"{min(errors):.0e} m to {max(errors):.0e} m, are round-off.",
+        "The printed tip errors, about 1e-5 m, are the tolerance of the paper's variable-step solver; the tip "
+        f"errors of this package, {min(errors):.0e} m to {max(errors):.0e} m, are round-off.",
     ]
 
 
@@ -147,12 +148,12 @@ def _misprint(result: Result) -> str:
     printed, ours = case.printed_qd[joint - 1] if case.printed_qd else np.nan, result.run.qd[-1, joint - 1]
     return (
         f"Text about Fig. {case.figure}: the final velocity of joint {joint}, printed as {printed:.6f} rad/s, is a "
-        f"misprint; it is {ours:.6f} rad/s. The other joints agree to {result.from_printed:.0e} rad/s."
+        f"misprint; the velocity is {ours:.6f} rad/s. The other joints agree to {result.from_printed:.0e} rad/s."
     )
 
 
 def _both_ways(paper: Paper, erratum: Mapping[str, Any]) -> str:
-    """Difference of the motion of Fig. 2 from the printed numbers, for the value in the text and for ours."""
+    """Difference of the motion of Fig. 2 from the printed numbers, for the text's value and this package's value."""
     case, circle = paper.figure(2), paper.paths["circle"]
     q0 = np.deg2rad(erratum["q0_degrees"]) if "q0_degrees" in erratum else paper.q0
     if "radius" in erratum:
@@ -161,5 +162,5 @@ def _both_ways(paper: Paper, erratum: Mapping[str, Any]) -> str:
     text, ours = (Result(case, p.simulate(case.path, case.scheme)).from_printed for p in (printed, paper))
     return (
         f"The final joint velocities of Fig. 2 differ by {text:.0e} rad/s for the text's value, by {ours:.0e} rad/s "
-        "for ours."
+        "for the value of this package."
     )

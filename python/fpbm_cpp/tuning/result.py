@@ -26,8 +26,8 @@ NOT_FINITE = {"+nan": "-", "+inf": "infeasible"}
 class Trials:
     """T schemes and the results of their motions: arrays of shape (T,), in the order of the trials.
 
-    value is the objective, NaN if the motion stopped early; peak_velocity [rad/s] and peak_acceleration [rad/s^2] are
-    those of the fastest joint; error is the larger number of the tip's largest position error [m] and largest
+    value is the objective, NaN if the motion stopped early; peak_velocity [rad/s] and peak_acceleration [rad/s^2]
+    belong to the fastest joint; error is the larger number of the tip's largest position error [m] and largest
     orientation error [rad]. A trial is feasible if its motion is complete, its objective finite, and its error within
     the tolerance.
     """

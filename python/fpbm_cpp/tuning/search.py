@@ -83,7 +83,7 @@ class Space:
 
 
 def _bounded(name: str) -> bool:
-    """Whether a number has an upper bound; all others are searched on a logarithmic scale."""
+    """Whether a number has an upper bound; all other numbers are searched on a logarithmic scale."""
     return bool(np.isfinite(parameters(FPBM)[name.partition("[")[0]].high))
 
 
@@ -95,7 +95,7 @@ def _ranges(name: str, given: ArrayLike, count: int) -> Array:
     except (TypeError, ValueError):
         ranges = np.empty(0)
     if ranges.shape not in ((2,), (count, 2)):
-        also = f", or {count} of them, one for each weight but the first" if name == "weights" else ""
+        also = f", or {count} pairs, one for each weight but the first" if name == "weights" else ""
         raise ValueError(f"{what}: must be a pair (low, high){also}")
     if not np.all(np.isfinite(ranges)) or not np.all(ranges[..., 0] < ranges[..., 1]):
         raise ValueError(f"{what}: must be finite, with low < high")
@@ -107,7 +107,7 @@ def _ranges(name: str, given: ArrayLike, count: int) -> Array:
 
 
 def require_cmaes() -> Any:
-    """The library of the searches. If it is missing, raises ImportError with the extra to install."""
+    """The library of the searches. If the library is missing, raises ImportError with the extra to install."""
     return extra("cmaes", "tuning", "tune")
 
 

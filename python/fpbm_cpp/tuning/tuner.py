@@ -106,9 +106,9 @@ def tune(
     limits, **tracking
         Limits that every motion keeps, and with limits, the other options of track(). Default: no limits.
     search : mapping of str to (low, high), optional
-        Ranges of the parameters that vary, among 'alpha', 'weights', 'k1', 'k2' and 'null_damping'; all others are
-        those of the baseline. The scale is logarithmic, except for alpha. The first weight is 1, since only ratios
-        count; the other weights have one range, or n - 1 ranges. Default: alpha in (0, 1), weights in (0.1, 10),
+        Ranges of the parameters that vary, among 'alpha', 'weights', 'k1', 'k2' and 'null_damping'; all other
+        parameters are as in the baseline. The scale is logarithmic, except for alpha. The first weight is 1, since only
+        ratios count; the other weights have one range, or n - 1 ranges. Default: alpha in (0, 1), weights in (0.1, 10),
         null_damping in (0.01, 10).
     baseline : FPBM, optional
         The first scheme, for comparison, with a diagonal W; its other options apply to all trials. Default: the paper's
@@ -170,7 +170,8 @@ def _why_none(tried: Trials, tolerance: float) -> str:
     text = f"none of {len(tried)} schemes is feasible: {np.sum(~complete)} stopped early or have no objective"
     if not complete.any():
         return f"{text}; simulate() with {tried.schemes[0]!r} shows the cause"
-    least = f"the least error of the others is {tried.error[complete].min():.2g}, above tolerance = {tolerance:g}"
+    error = tried.error[complete].min()
+    least = f"the least error of the other schemes is {error:.2g}, above tolerance = {tolerance:g}"
     return f"{text}; {least}: give a larger tolerance, or a smaller dt"
 
 

@@ -1,8 +1,8 @@
-"""Pages in the browser: a motion, and an arm that follows a handle. They need the extra 'view'.
+"""Pages in the browser, which need the extra 'view': a motion, and an arm that follows a handle.
 
 On the viewer's page, the user selects a scheme and a time (controls). The viewer repeats the motion; scene and readout
-draw it. On the servo's page, the user drags a target (handle). The loop runs ticks in real time; scene and live draw
-them. Both pages draw the shapes of the clearance (shapes).
+draw the motion. On the servo's page, the user drags a target (handle). The loop runs ticks in real time; scene and live
+draw the ticks. All pages draw the shapes of the clearance (shapes).
 """
 
 import os
@@ -100,7 +100,7 @@ def servo(
 
     The positions of the handle, 20 per second, are the input of targets, a TargetFilter with its own bounds. The
     default bounds depend on the length L of the arm: L per second, 5 L/s^2, 100 L/s^3 and 2 rad/s, 10 rad/s^2,
-    200 rad/s^3. task, dt, limits, clearance and bounds are those of Tracker; urdf, host and port are those of view().
+    200 rad/s^3. task, dt, limits, clearance and bounds are as for Tracker; urdf, host and port are as for view().
     Shapes of the clearance are translucent, with a line between the nearest shapes. Arrows move obstacles that are
     capsules or boxes, which follow the arrows at 0.3 m/s.
 

@@ -50,7 +50,7 @@ def distances(task: Task, target: Array, now: Array) -> dict[str, float]:
 
 
 def selected(task: Task, rows: Sequence[str]) -> Array:
-    """1 for each of these rows that a task selects, 0 for the others."""
+    """1 for each of these rows that a task selects, 0 for the other rows."""
     own = (task.all_rows if task.rows is None else task.rows) if isinstance(task, RowsTask) else ()
     return np.array([float(row in own) for row in rows])
 

@@ -14,9 +14,9 @@ ROUNDS, PARTS = 7, 16  # The gap is convex along a capsule: each round narrows t
 
 
 def nearest_points(clearance: Clearance, frames: Array, pair: tuple[str, str]) -> Array | None:
-    """Nearest points on the surfaces of a pair of shapes, given by name, shape (2, 3); frames are those of the links.
+    """Nearest points on the surfaces of a pair of shapes, given by name, shape (2, 3); frames are the links' frames.
 
-    None for a pair of a tip and a wall of its bounds, because these are not shapes.
+    None for a pair of a tip and a wall of its bounds, because tips and walls are not shapes.
     """
     first, second = pair
     others: list[Obstacle] = [each for each in (*clearance.capsules, *clearance.obstacles) if each.name == second]

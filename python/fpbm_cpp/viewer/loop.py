@@ -39,7 +39,7 @@ class ServoLoop:
 
     targets is a filter with its own bounds, or for a stack, a dictionary of filters by name. The default bounds depend
     on the length L of the arm: L per second, 5 L/s^2 and 100 L/s^3; 2 rad/s, 10 rad/s^2 and 200 rad/s^3. All other
-    parameters are those of Tracker.
+    parameters are as for Tracker.
 
     Raises ValueError as Tracker does, and if a filter is for another task or tick.
     """

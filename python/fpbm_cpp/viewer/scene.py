@@ -224,7 +224,7 @@ def _place_camera(server: ViserServer, centre: Array, radius: float, planar: boo
     camera.up = (0.0, 1.0, 0.0) if planar else (0.0, 0.0, 1.0)
 
     def step_back(client: ClientHandle) -> None:
-        if client.camera.aspect < 1.0:  # On a narrow screen, the horizontal field of view is the smaller one.
+        if client.camera.aspect < 1.0:  # On a narrow screen, the smaller field of view is horizontal.
             client.camera.position = centre + offset / client.camera.aspect
 
     server.on_client_connect(step_back)

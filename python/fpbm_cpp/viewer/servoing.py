@@ -34,7 +34,7 @@ class Servo(Page):
     For a stack, each frame task has a handle with the name of the task.
 
     Serves from another thread until close(), or until the end of a with block; url is the address of the page.
-    Parameters and errors are those of fpbm_cpp.servo().
+    Parameters and errors are as for fpbm_cpp.servo().
     """
 
     def __init__(

@@ -20,7 +20,7 @@ class Viewer(Page):
     """A page in the browser with a run. A change of a parameter on the page repeats the simulation.
 
     Serves from another thread until close(), or until the end of a with block; url is the address of the page. All
-    later runs have the arm, path, start, task and limits of the first run. Other parameters and errors are those of
+    later runs have the arm, path, start, task and limits of the first run. Other parameters and errors are as for
     fpbm_cpp.view().
     """
 
@@ -73,7 +73,7 @@ class Viewer(Page):
 
     @property
     def time(self) -> float:
-        """The shown time [s]. Assign another time to show it."""
+        """The shown time [s]. Assign another time to show the run at that time."""
         return self._player.time
 
     @time.setter

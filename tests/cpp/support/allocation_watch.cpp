@@ -17,7 +17,7 @@
 namespace fpbm::test {
 namespace {
 
-// Constant-initialised, so that they are valid for allocations before main().
+// Constant-initialised variables are valid for allocations before main().
 thread_local bool watching = false;
 thread_local AllocationCount counted;
 

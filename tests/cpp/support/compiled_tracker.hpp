@@ -8,7 +8,7 @@
 #include "fpbm/realtime/tracker.hpp"
 #include "fpbm/scheme/schemes.hpp"
 
-/// Trackers that are compiled once for all tests. A test that uses them compiles only the calls.
+/// Trackers that are compiled once for all tests. A test that uses these trackers compiles only the calls.
 namespace fpbm::test {
 
 /// A Tracker whose members are defined in compiled_tracker_members.hpp. trackers_*.cpp instantiate the types that the

@@ -89,7 +89,7 @@ template <typename Space, typename Arm>
   return result;
 }
 
-/// Resolves scenes by all schemes of one type, under any name of the paper. Compiled once for all of them.
+/// Resolves scenes by all schemes of one type, under any name of the paper. Compiled once for all these schemes.
 template <typename Arm, typename Space, typename Scheme>
 [[nodiscard]] std::function<Outcome(const Law&, const Scene&)> resolver(Arm (*make_arm)(const Eigen::VectorXd&),
                                                                         std::function<Scheme(const Law&)> make_scheme) {

@@ -13,7 +13,7 @@ namespace fpbm::test {
 /// Parameters of a scheme.
 struct Takes {
   bool acceleration;            ///< Whether the scheme is at acceleration level.
-  std::optional<double> alpha;  ///< Weight of WMVN in the balance. Empty if the caller chooses it.
+  std::optional<double> alpha;  ///< Weight of WMVN in the balance; empty if the caller chooses it.
   bool feedback;
   bool weights;
   bool dense;  ///< Whether W may be dense, not only diagonal.
