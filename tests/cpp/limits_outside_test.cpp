@@ -154,7 +154,7 @@ TEST(Outside, no_acceleration_peak_occurs_at_a_bound) {
 }
 
 /// A joint that is pushed against its bound and measured with noise keeps its acceleration bound. The deviation from
-/// the bound is as large as the noise.
+/// the bound is at most ten times the noise.
 TEST(Outside, noise_about_a_bound_keeps_the_acceleration_bound) {
   const SerialArm<7> panda(panda_without_jerk());
   const JointLimits<7>& bounds = panda.limits();

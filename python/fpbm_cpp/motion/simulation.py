@@ -74,7 +74,7 @@ def simulate(
     task : str
         'position' (default), or 'pose' to track the tip's orientation too. For a stack: the name of the task that
         follows the path, which is optional if only one task is a position or a pose. For several paths: the name of
-        the task of the run's x, x_ref and error; default: the first task.
+        the task of the run's x, x_ref and error; default: the task of the first path.
     stack : Stack, optional
         Several tasks in strict priority. The path is a displacement from the start of one task; the other tasks have
         their targets x or q. Directions that are nearly singular or in conflict with higher levels are damped.
