@@ -170,7 +170,7 @@ std::vector<Motion> run_all(int first, int count, int threads, bool stops) {
   return motions;
 }
 
-/// Prints the results of the motions. Returns whether they satisfy the conditions at the head of this file.
+/// Prints the results of the motions. Returns whether the results satisfy the conditions at the head of this file.
 bool report(const std::vector<Motion>& motions, int first, const char* name) {
   const auto count = static_cast<double>(motions.size());
   std::vector<double> errors;
