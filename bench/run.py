@@ -1,6 +1,6 @@
-"""Runs every benchmark that has been built or installed, and collects their output in bench/results.
+"""Runs every benchmark that has been built or installed, and collects the output in bench/results.
 
-Missing benchmarks are listed as missing, and all others are run.
+Missing benchmarks are listed as missing, and all other benchmarks are run.
 """
 
 from __future__ import annotations

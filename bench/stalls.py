@@ -131,7 +131,7 @@ def main() -> None:
     if options.record:
         RECORD.write_text(json.dumps({**record, compiler: counts}, indent=2) + "\n")
     elif not known:
-        print(f"None are recorded for {compiler}, only for {', '.join(record) or 'no compiler'}: not checked")
+        print(f"No counts are recorded for {compiler}, only for {', '.join(record) or 'no compiler'}: not checked")
     elif more := [job for job in counts if counts[job] > known.get(job, 0.0)]:
         sys.exit(f"More than recorded: {', '.join(more)}. If the change is intended: python bench/stalls.py … --record")
 
