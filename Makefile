@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 OUT ?= demo
 SECONDS ?= 600
 JOBS ?= $(shell nproc)
-# Wheel to install. If empty, the package is built from its sources.
+# Wheel to install. If WHEEL is empty, the package is built from its sources.
 WHEEL ?=
 PACKAGE := $(shell find cpp python cmake -type f -not -name '*.pyc') CMakeLists.txt pyproject.toml
 EIGEN := /usr/include/eigen3/Eigen/Core:libeigen3-dev
@@ -24,13 +24,13 @@ help:
 	@echo 'make demo             reproduce the paper: tables, figures and a report in ./$(OUT)'
 	@echo 'make page             an interactive page with the library in WebAssembly: build/web/page.html'
 	@echo 'make test             build and run the C++ tests and the Python tests'
-	@echo 'make test-view        the tests of the viewer and the page in a browser; make test skips them without one'
+	@echo 'make test-view        the tests of the viewer and the page; make test skips these tests without a browser'
 	@echo 'make homes            fit capsules to the meshes of every robot of the tests, and try its home posture'
 	@echo 'make clang, sanitize  the C++ tests with clang++, and under ASan and UBSan'
 	@echo 'make arm64, windows   the C++ tests for 64-bit Arm under qemu, and for Windows under Wine'
-	@echo 'make arm64-wheel      the Python package for 64-bit Arm, its TESTS run under qemu'
+	@echo 'make arm64-wheel      the Python package for 64-bit Arm, with its TESTS run under qemu'
 	@echo 'make macos            the C++ tests and the Python extension for macOS, compiled and linked only'
-	@echo 'make cross            a few motions on Arm and Windows, compared with those here'
+	@echo 'make cross            a few motions on Arm and Windows, compared with this machine'
 	@echo 'make firmware         a program for a bare Cortex-M7, run by qemu and compared with this machine'
 	@echo 'make packages         the recipes for Conan and, with VCPKG_ROOT, for vcpkg'
 	@echo 'make nightly          the C++ tests and a day of a control loop'
@@ -41,12 +41,12 @@ help:
 	@echo 'make fuzz             look for input that breaks the tracker, for SECONDS=$(SECONDS)'
 	@echo 'make lint             formatting, static analysis, imports, types, stubs, spelling, terms to avoid'
 	@echo 'make prose            draw sentences to read: SEED=1 COUNT=20'
-	@echo 'make bench            every benchmark, against the peers that are found; QUICK=1 for a first look'
-	@echo 'make count            compare the instructions of each step with those recorded'
+	@echo 'make bench            every benchmark, compared with the peers that are found; QUICK=1 for a first look'
+	@echo 'make count            compare the instructions of each step with the recorded counts'
 	@echo 'make worst            the longest ticks that a search has found; SEARCH=600 searches on'
-	@echo 'make stalls           the loads of each step that wait for stores, against those recorded'
+	@echo 'make stalls           the loads of each step that wait for stores, compared with the recorded counts'
 	@echo 'make format, stubs    format all sources and list the headers in fpbm.hpp; rewrite the Python stubs'
-	@echo 'make docs             build the documentation in ./build/docs, its notebooks executed'
+	@echo 'make docs             build the documentation in ./build/docs, with executed notebooks'
 	@echo 'make notebooks        only the notebooks, executed, as .ipynb in ./build/notebooks'
 	@echo 'make test-docs        run every code block of the README and the documentation'
 	@echo 'make sdist, wheel     the source distribution; a wheel for Linux, built offline from the source distribution and tested'

@@ -6,7 +6,7 @@
 
 #include "fpbm/fpbm.hpp"
 
-// Arms, tasks, schemes and states of the benchmarks. The same for every library.
+// Arms, tasks, schemes and states of the benchmarks, for all libraries.
 namespace bench {
 
 /// Links of 1 m.

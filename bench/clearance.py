@@ -20,8 +20,8 @@ def main() -> None:
     motions = commands.add_parser("motions", help="random motions straight through table, shelf and post")
     motions.add_argument("--motions", type=int, default=200, help="of four arms, alternately; 10,000 in the full run")
     motions.add_argument("--workers", type=int, default=2)
-    motions.add_argument("--minutes", type=float, default=60.0, help="stop then")
-    commands.add_parser("peers", help="the same targets with Pink and Mink")
+    motions.add_argument("--minutes", type=float, default=60.0, help="stop after this time [min]")
+    commands.add_parser("peers", help="motions with fpbm_cpp, Pink and Mink to the same targets")
     post = commands.add_parser("post", help="a post that crosses a Panda's work space in MuJoCo")
     post.add_argument("--motions", type=int, default=5, help="of each speed")
     for command in commands.choices.values():

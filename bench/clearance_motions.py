@@ -98,7 +98,7 @@ def aims(rng: np.random.Generator, obstacles: list[Obstacle], tip: Array) -> Ite
 
 
 def start(rng: np.random.Generator, arm: fp.SerialArm, limits: fp.JointLimits, clearance: fp.Clearance) -> Array | None:
-    """A random posture that is farther than START from the margin of all shapes; None if none is found."""
+    """A random posture that is farther than START from the margin of all shapes; None if no posture is found."""
     low, high = (np.clip(bound, -2.8, 2.8) for bound in (limits.lower, limits.upper))
     for q in rng.uniform(low, high, (3000, arm.dof)):
         nearest = clearance.nearest(arm, q)
@@ -168,7 +168,7 @@ COLUMNS: dict[str, Callable[[list[Motion]], str]] = {
     "capsules below the margin by 1e-9": lambda of: f"{sum(m.distance < -1e-9 for m in of)}",
     "least distance - margin [m]": lambda of: f"{min(m.distance for m in of):.1e}",
     "checks of meshes": lambda of: f"{sum(m.checks for m in of)}",
-    "of them in contact": lambda of: f"{sum(m.contacts for m in of)}",
+    "checks with contact": lambda of: f"{sum(m.contacts for m in of)}",
     "meshes apart [mm]": lambda of: f"{1e3 * min(m.apart for m in of):.1f}",
     **{f"{bound}'s excess": lambda of, i=i: f"{max(m.excess[i] for m in of):.0e}" for i, bound in enumerate(BOUNDS)},
     "unguarded: motions": lambda of: f"{sum(m.free_contacts is not None for m in of)}",

@@ -7,7 +7,7 @@ capsules in the motions of all libraries.
 Pink and Mink have the gains of their own examples. Pink: kukas_self_collision.py, with the cost 50 of the frame, the
 cost 1e-3 of the posture, the gain 20 of the barrier, and the gain 1 of the safe displacement. Mink: arm_ur5e.py, with
 the cost 1, Levenberg-Marquardt damping 1, damping 1e-3, and the gain 0.85 of the limit, which includes shapes within
-twice the margin. In both libraries, the gain 1 of the frame requires the target within a tick. Rows with a gain of 0.02
+twice the margin. In Pink and Mink, the gain 1 of the frame requires the target within a tick. Rows with a gain of 0.02
 have the gain of fpbm_cpp, 20/s. In a tick without a solution, the arm does not move.
 """
 

@@ -62,7 +62,7 @@ def recorded() -> dict[str, dict[str, float]]:
 
 def grown(counts: dict[str, float], record: dict[str, float]) -> list[str]:
     """Messages on jobs whose counts have grown too much, and on jobs that only `counts` or only `record` has."""
-    lines = [f"{job} is new: record it" for job in counts.keys() - record.keys()]
+    lines = [f"{job} is new: record the counts" for job in counts.keys() - record.keys()]
     lines += [f"{job} is recorded, but not counted any more" for job in record.keys() - counts.keys()]
     for job in counts.keys() & record.keys():
         growth = counts[job] / record[job] - 1

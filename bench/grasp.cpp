@@ -3,10 +3,10 @@
 //
 //     bench_grasp [motions = 10000] [first = 0] [threads]
 //
-// The relative pose is on the first level, the pose of the object on the second, a posture on the third. Every motion
-// is executed twice, the second time with stop() at a random time. bench/grasp_worker.py generates the same motions
-// from the same random numbers. Fails if a relative pose differs from the start by more than 1e-6 m or rad in any
-// motion, or by more than 1e-9 in more than 1 % of the motions, or if a bound is exceeded by more than 1e-9.
+// The relative pose is on the first level, the pose of the object on the second level, a posture on the third level.
+// Every motion is executed twice, the second time with stop() at a random time. bench/grasp_worker.py generates the
+// same motions from the same random numbers. Fails if a relative pose differs from the start by more than 1e-6 m or rad
+// in any motion, or by more than 1e-9 in more than 1 % of the motions, or if a bound is exceeded by more than 1e-9.
 
 #include <algorithm>
 #include <array>
@@ -170,7 +170,7 @@ std::vector<Motion> run_all(int first, int count, int threads, bool stops) {
   return motions;
 }
 
-/// Prints the results of the motions. Returns whether they satisfy the conditions at the head of this file.
+/// Prints the results of the motions. Returns whether the results satisfy the conditions at the head of this file.
 bool report(const std::vector<Motion>& motions, int first, const char* name) {
   const auto count = static_cast<double>(motions.size());
   std::vector<double> errors;

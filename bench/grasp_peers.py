@@ -1,14 +1,14 @@
 """Two Pandas hold a tray, by fpbm_cpp and other libraries: `python bench/grasp_peers.py [--motions 20]` prints a table.
 
-The random object paths are those of bench/grasp.cpp, and are faster than the arms. The bounds are those of the preset.
+The random object paths are from bench/grasp.cpp, and are faster than the arms. The bounds are from the preset.
 The error of the relative pose is the largest error in each motion. The excess over the bounds is computed by
 differences of positions. For velocities and accelerations, the excess is relative to the bound. Each library is
 installed from PyPI into its own virtual environment. The output lists libraries that cannot be installed.
 
 The other libraries minimise weighted squares. In Pink, Mink and roboplan, the cost of the relative pose is 100, and the
 cost of the object is 1. In PlaCo, the relative pose is an equality. The libraries receive the pose of the object for
-the end of the tick. With a gain of 1, their default, they correct the whole error of the object in one tick. With 0.02,
-the error decays at 20/s. fpbm_cpp also bounds accelerations and jerks.
+the end of the tick. With a gain of 1, the default, the libraries correct the whole error of the object in one tick.
+With a gain of 0.02, the error decays at 20/s. fpbm_cpp also bounds accelerations and jerks.
 """
 
 from __future__ import annotations

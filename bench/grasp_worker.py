@@ -1,6 +1,6 @@
 """Motions of a tray that two Pandas hold, by one library. bench/grasp_peers.py runs this file for each library.
 
-The motions are those of bench/grasp.cpp, from the same random numbers. Prints JSON.
+The motions equal the motions of bench/grasp.cpp, from the same random numbers. Prints JSON.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ TICKS, MOVE, MOVES, HOLD = 3000, 600, 4, 1000
 HOME = np.array([0.0, -0.6, 0.0, -2.4, 0.0, 1.8, 0.785])
 PLACES = {"right": -0.4, "left": 0.4}  # Along y [m].
 # Costs of the relative pose, of the pose of the object and of the posture. The costs of the object and of the posture
-# are those of the examples of Pink and Mink. The quadratic programs contain the squares of the costs.
+# are from the examples of Pink and Mink. The quadratic programs contain the squares of the costs.
 COSTS = (100.0, 1.0, 1e-3)
 TOLERANCE = 1e-10  # Tolerance of quadratic programs, as in bench/stack_solvers.py.
 

@@ -218,7 +218,7 @@ inline fpbm::Clearance<7> surroundings() {
   return clearance;
 }
 
-/// Number of its pairs that are closer than 15 cm in the bent posture.
+/// Number of pairs of surroundings() that are closer than 15 cm in the bent posture.
 inline int near_pairs() {
   const auto clearance = surroundings();
   auto placed = clearance.placement();

@@ -9,9 +9,9 @@
 
 #include "jobs.hpp"
 
-// Rows of bench_limited: unlimited/arm/task/bounds/library for kinematics and scheme alone, and limited/… for the same
-// within the joint limits. A solver is one library for one case: move() computes tip, J, Jd and the desired motion of
-// the scheme, limit() the motion within the limits. Each file of a library adds its own solver.
+// Rows of bench_limited: unlimited/arm/task/bounds/library for kinematics and scheme alone, and limited/… for
+// kinematics and scheme within the joint limits. A solver is one library for one case: move() computes tip, J, Jd and
+// the desired motion of the scheme, limit() the motion within the limits. Each file of a library adds its own solver.
 namespace bench {
 
 enum class Bounds { kAcceleration, kJerk };
@@ -42,7 +42,7 @@ struct Answer {
 
 /// Calls solve(box, from, desired, answer) for each problem of Limiter: the motion from `from` toward `desired`, as far
 /// as the box admits. Without bounds on jerk, there is one problem: `from` is a motion that slows the arm down. With
-/// bounds on jerk, there are two problems. The first problem is the same with box_in_time(). In the second problem,
+/// bounds on jerk, there are two problems. The first problem is this problem in box_in_time(). In the second problem,
 /// `from` is the acceleration of the last tick, `desired` is the result of the first problem, and the box is the box of
 /// the tick. Returns false if solve() finds no solution.
 template <typename Case, int N = Case::kDof, typename Solve>
@@ -94,7 +94,7 @@ class OursLimited {
   fpbm::Status status_;
 };
 
-/// Random viable states, with references that exceed the limits. The same in every run.
+/// Random viable states, with references that exceed the limits. The states are the same in every run.
 template <typename Case, Bounds bounds>
 std::vector<Asked<Case>> asked(std::size_t count) {
   constexpr int N = Case::kDof;

@@ -7,8 +7,7 @@
 
 namespace bench {
 
-/// Pinocchio's kinematics of a chain of revolute joints about z. In a separate file, because it takes minutes to
-/// compile.
+/// Pinocchio's kinematics of a chain of revolute joints about z, in a separate file: the compilation takes minutes.
 class PinocchioArm {
  public:
   /// Linear rows first, along the axes of the base frame, at the tip.

@@ -1,9 +1,9 @@
 """Times of a step of each scheme from Python: fpbm_cpp, Pinocchio, the Robotics Toolbox, Pink and Mink, if installed.
 
-Pinocchio and the Robotics Toolbox do not have these schemes. NumPy computes the schemes on their kinematics, by solving
-linear systems instead of the paper's pseudoinverses. Before the timing, their results are compared with fpbm_cpp, to
-1e-9. Pink and Mink solve a quadratic program for the tip only, without limits. Their targets are small displacements:
-then, the program equals MVN with feedback, to 1e-3. Each round times all rows in another order.
+Pinocchio and the Robotics Toolbox do not have these schemes. NumPy computes the schemes on the kinematics of these
+libraries, by solving linear systems instead of the paper's pseudoinverses. Before the timing, the results are compared
+with fpbm_cpp, to 1e-9. Pink and Mink solve a quadratic program for the tip only, without limits. For the small
+displacements of the targets, the program equals MVN with feedback, to 1e-3. Each round times all rows in another order.
 """
 
 from __future__ import annotations
@@ -46,12 +46,12 @@ class Input(NamedTuple):
     q: Array
     qd: Array
     x: Array  # Reference in the format of fpbm_cpp.
-    target: Array  # The same reference as a homogeneous matrix.
+    target: Array  # Reference as a homogeneous matrix.
     xd: Array
     xdd: Array
 
 
-# Pose of the tip, J and Jd at (q, qd); Jd is None unless it is requested.
+# Pose of the tip, J and Jd at (q, qd); Jd is None unless requested.
 Kinematics = Callable[[Array, Array, bool], tuple[Array, Array, Any]]
 
 

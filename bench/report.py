@@ -25,7 +25,7 @@ CPLUSPLUS = {
     "kdl_wdls": "KDL `_wdls`",
 }
 LANES = {
-    "fpbm_cpp": "by itself",
+    "fpbm_cpp": "without lanes",
     "baseline": "in 2 lanes, SSE2",
     "avx2": "in 4 lanes, AVX2",
     "avx512": "in 8 lanes, AVX-512",
@@ -178,7 +178,7 @@ def over_median(results: Results) -> list[str]:
         f"p99.9 / p50 in warm caches. On an isolated core, at most 1.5 is required. This run was on {where}.",
         "",
         *table(
-            ["job", "p99.9 / p50 of the job", "of an empty call of the same duration", "ratio of both"],
+            ["job", "p99.9 / p50 of the job", "p99.9 / p50 of an empty call of the same duration", "job / empty call"],
             (cells(row) for row in results.tails if "empty_p50" in row and row["name"] != "timer"),
         ),
     ]
@@ -269,7 +269,7 @@ def limited(results: Results) -> list[str]:
         "",
         *comparison(results, "limits", LIMITED, kind="bounds"),
         "Results for 10,000 problems, compared with this library, which solves all problems. With bounds on jerk, line",
-        "and s are those of the second problem. The last column counts problems without a solution if the whole task",
+        "and s are of the second problem. The last column counts problems without a solution if the whole task",
         "is an equality.",
         "",
         *table(["arm, task, bounds: library", *columns.values()], scores),

@@ -1,6 +1,6 @@
-"""Runs every benchmark that has been built or installed, and collects their output in bench/results.
+"""Runs every benchmark that has been built or installed, and collects the output in bench/results.
 
-Missing benchmarks are listed as missing, and all others are run.
+Missing benchmarks are listed as missing, and all other benchmarks are run.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def machine() -> dict[str, Any]:
 
 
 def isolated_core() -> int | None:
-    """A processor that is isolated from the scheduler (isolcpus=…); None if there is none."""
+    """A processor that is isolated from the scheduler (isolcpus=…), or None."""
     try:
         cores = Path("/sys/devices/system/cpu/isolated").read_text().strip()
     except OSError:
@@ -65,7 +65,7 @@ def isolated_core() -> int | None:
 
 @contextmanager
 def kept_to(core: int | None) -> Iterator[None]:
-    """Runs programs on the given core only. If permitted, they also have real-time priority. None: no change."""
+    """Runs programs on the given core only, and with real-time priority if permitted. None: no change."""
     if core is None:
         yield
         return

@@ -1,7 +1,7 @@
 """Times of the paper's circle from Python: fpbm_cpp, NumPy and SciPy, in one run.
 
-10 s at 1 kHz require 40,000 evaluations of FPBM. NumPy computes the same RK4 steps with the same law. The tolerance of
-SciPy's DOP853 gives the accuracy of these steps.
+10 s at 1 kHz require 40,000 evaluations of FPBM. NumPy computes the same RK4 steps with the same law as fpbm_cpp. The
+tolerance of SciPy's DOP853 gives the accuracy of these steps.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, help="also write the times to this JSON file")
     options = parser.parse_args()
 
-    # fpbm_cpp is timed before and after the others, to detect a change of the speed of the machine.
+    # fpbm_cpp is timed before and after NumPy and SciPy, to detect a change of the speed of the machine.
     before, error = timed(by_fpbm, 100)
     rows = [("NumPy, same RK4 steps", *timed(by_numpy, 3)), ("SciPy DOP853, equal accuracy", *timed(by_scipy, 3))]
     after, _ = timed(by_fpbm, 100)

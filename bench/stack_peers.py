@@ -2,8 +2,8 @@
 
 In C++ (bench_stack): a limited step of this library, and a cascade of quadratic programs by eiquadprog on Pinocchio's
 kinematics. In Python (stack_worker.py): a tick of fp.Tracker, and of Pink, Mink, PlaCo and roboplan. Each library is
-installed from PyPI into its own virtual environment, because their requirements conflict. The output lists libraries
-that cannot be installed. Ratios are computed from times in the same run, with alternating calls.
+installed from PyPI into its own virtual environment, because the requirements of the libraries conflict. The output
+lists libraries that cannot be installed. Ratios are computed from times in the same run, with alternating calls.
 """
 
 from __future__ import annotations

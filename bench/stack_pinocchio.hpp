@@ -7,7 +7,7 @@
 
 namespace bench {
 
-/// Pinocchio's kinematics of the tip and the elbow of a Panda. In a separate file, because it takes minutes to compile.
+/// Pinocchio's kinematics of the tip and the elbow of a Panda, in a separate file: the compilation takes minutes.
 class StackPinocchio {
  public:
   /// A frame: rows of J and J̇ q̇ along the axes of the base frame, at the origin of the frame, linear rows first.

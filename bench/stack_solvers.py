@@ -296,7 +296,7 @@ class Roboplan:
 
 
 class Peer(NamedTuple):
-    packages: tuple[str, ...]  # Packages to install; the version is the version of the first.
+    packages: tuple[str, ...]  # Packages to install; the version is the version of the first package.
     make: Callable[[Panda, Options], Solver]
 
 

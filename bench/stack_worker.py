@@ -164,7 +164,7 @@ def run(robot: Panda, solver: Solver) -> tuple[list[dict[str, Any]], list[float]
 
 
 def agreement(robot: Panda, name: str, options: Options) -> float:
-    """Largest relative difference between the tip motions of both libraries in a tick without active bounds."""
+    """Largest relative difference of the tip motion from fpbm_cpp in a tick without active bounds."""
     solver, path, worst = PEERS[name].make(robot, options), Path(robot.arm), 0.0
     tracker = ours(robot, "velocity")
     q = START

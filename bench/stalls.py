@@ -1,12 +1,13 @@
 """Loads that wait for stores (store-forwarding stalls) per call of each job, from a memory trace by lackey.
 
 If the bytes of a load are still in the store buffer of the processor, the load has no stall only if a single store
-wrote all these bytes. If several stores wrote the bytes, or a store wrote only a part of them, the load waits until the
-stores are complete: about a dozen cycles. A usual cause is a 16-byte load of two numbers that were stored separately.
-The trace contains all addresses. Therefore, the counts are exact, and do not depend on the load of the machine.
+wrote all these bytes. If several stores wrote the bytes, or a store wrote only a part of the bytes, the load waits
+until the stores are complete: about a dozen cycles. A usual cause is a 16-byte load of two numbers that were stored
+separately. The trace contains all addresses. Therefore, the counts are exact, and do not depend on the load of the
+machine.
 
-If stalls.json has counts for the compiler, the counts are compared with them. Fails if a job has more stalls than
-recorded.
+If stalls.json has counts for the compiler, the new counts are compared with the recorded counts. Fails if a job has
+more stalls than recorded.
 """
 
 from __future__ import annotations
@@ -130,7 +131,7 @@ def main() -> None:
     if options.record:
         RECORD.write_text(json.dumps({**record, compiler: counts}, indent=2) + "\n")
     elif not known:
-        print(f"None are recorded for {compiler}, only for {', '.join(record) or 'no compiler'}: not checked")
+        print(f"No counts are recorded for {compiler}, only for {', '.join(record) or 'no compiler'}: not checked")
     elif more := [job for job in counts if counts[job] > known.get(job, 0.0)]:
         sys.exit(f"More than recorded: {', '.join(more)}. If the change is intended: python bench/stalls.py … --record")
 

@@ -73,8 +73,8 @@ struct UpperBodyInMotion {
   static fpbm::LinkFrame<> last() { return fpbm::frame_of(tree(), "right_hand"); }
 };
 
-/// Pose of the first hand; position of a joint of the last arm; axis of its hand; posture. With fewer levels, the
-/// levels in between are omitted first.
+/// Pose of the first hand; position of a joint of the last arm; axis of the hand of this arm; posture. With fewer
+/// levels, the levels in between are omitted first.
 template <typename Case, int Levels>
 auto growing_stack() {
   const fpbm::TaskGains<> gains(10.0, 25.0);

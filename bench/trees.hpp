@@ -4,7 +4,7 @@
 
 #include "tree_kinematics.hpp"
 
-// Rows of bench_trees: `trees/robot/what/library`.
+// Rows of bench_trees: `trees/robot/quantity/library`.
 namespace bench {
 
 template <typename Solver, typename Case, Rates rates>

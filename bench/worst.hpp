@@ -77,7 +77,7 @@ class WorstMotion {
     for (std::size_t k = 0; k < kPhases; ++k) phases_.emplace_back(numbers, Case::kDof + k * kPhaseNumbers);
   }
 
-  /// Whether there is a next tick. If so, its target is set.
+  /// Returns whether there is a next tick, and sets the target of the next tick.
   [[nodiscard]] bool next() {
     if (phase_ == phases_.size()) return false;
     move(target_, start_, phases_[phase_], 1e-3 * tick_);

@@ -102,7 +102,7 @@ def ticks(tracker: fp.Tracker, path: fp.Path, targets: list[Target]) -> Iterator
 class Motion:
     """Joint positions of every tick [rad], indices and times of the commands, and results."""
 
-    q: list[np.ndarray]  # The first is the start.
+    q: list[np.ndarray]  # The first entry is the start posture.
     sent: list[int] = field(default_factory=list)  # Indices of the commands in q.
     time: list[float] = field(default_factory=list)  # Times of the commands by the robot's clock [s].
     desired: list[list[float]] = field(default_factory=list)  # Commands that the robot reported at these times [rad].

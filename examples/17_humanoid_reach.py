@@ -16,7 +16,7 @@ try:
 except metadata.PackageNotFoundError:
     sys.exit("this example needs a URDF file of example-robot-data: pip install example-robot-data")
 
-HANDS = {"left": 1, "right": -1}  # Signs of their y coordinates.
+HANDS = {"left": 1, "right": -1}  # Signs of the y coordinates of the hands.
 LINKS = {hand: f"{hand}_wrist_yaw_link" for hand in HANDS}
 PLACES = {"forward": (0.3, 0.05, 0), "lifted": (0.3, 0.2, 0), "turned": (0.3, 0.2, 0.6)}  # x, z [m], yaw [rad]
 HALF = 0.16  # Half of the distance between the hands [m].

@@ -45,8 +45,8 @@ def panda_mjcf(
     """MJCF of the Panda with a torque motor on each joint and a site "tip" at its flange.
 
     inertia_error: relative error of every mass and inertia. friction: factor on all friction. The joints have no stops
-    and the links do not collide: if a joint leaves its range, the simulation shows this. placements: (4, 4) poses of
-    the bases of several Pandas, by the prefixes of their names.
+    and the links do not collide: the simulation shows if a joint leaves its range. placements: (4, 4) poses of the
+    bases of several Pandas, by the prefixes of their names.
     """
     heavier = 1 + inertia_error
     root = ElementTree.Element("mujoco", model="panda")

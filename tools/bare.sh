@@ -1,6 +1,6 @@
 #!/bin/sh
 # Runs a command without network access and without the installed Eigen. If the system permits no namespaces, the
-# command has both.
+# command has network access and the installed Eigen.
 #   bare.sh COMMAND ...
 set -eu
 if ! unshare --map-root-user --net --mount true 2> /dev/null; then

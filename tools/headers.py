@@ -1,4 +1,4 @@
-"""Writes fpbm.hpp, which includes every header, or checks that it does (--check)."""
+"""Writes fpbm.hpp, which includes every header, or checks the file (--check)."""
 
 import sys
 from pathlib import Path

@@ -29,7 +29,7 @@ WORD = re.compile(r"[A-Za-z]{2,}")
 
 @dataclass(frozen=True)
 class Term:
-    """A term to avoid, what to write instead, and the contexts in which the words are right."""
+    """A term to avoid, its replacement, and the contexts in which the term is right."""
 
     pattern: str
     use: str

@@ -1,7 +1,7 @@
 """Finds the sentences of the repository: its pages, its comments, and the texts that programs show.
 
-tools/prose.py reads them. Comments of C++ and JavaScript and their string literals are found by one regular expression,
-and comments and strings of Python by its own parser.
+tools/prose.py reads the sentences. Comments and string literals of C++ and JavaScript are found by one regular
+expression, and comments and strings of Python by the parser of Python.
 """
 
 from __future__ import annotations

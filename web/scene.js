@@ -47,7 +47,7 @@ export class Stage {
     this.orbit.enablePan = false;
     this.orbit.enableDamping = true;
     this.scene = new Scene();
-    this.world = new Group(); // Its axes are the axes of the base frame.
+    this.world = new Group(); // With the axes of the base frame.
     this.scene.add(this.world);
     this.light();
     this.look = look;

@@ -5,20 +5,21 @@ const DEGREE = 180 / Math.PI;
 export const ARMS = [
   {
     spare: "two redundant joints",
-    story: `Two joints are enough for any position in a plane. This arm has four, so its joints can move while its tip
-      is at rest. fpbm_cpp computes the motion of all four joints, a thousand times a second.`,
+    story: `Two joints are enough for any position in a plane. This arm has four joints, so the joints can move while
+      the tip is at rest. fpbm_cpp computes the motion of all four joints, a thousand times a second.`,
     weights: [1, 2, 3, 4],
   },
   {
     spare: "one redundant joint",
-    story: `Six joints are enough for any pose of a hand. This Panda has seven, like your own arm: hold your hand on the
-      table, and your elbow can still move. fpbm_cpp computes the motion of all joints, a thousand times a second.`,
+    story: `Six joints are enough for any pose of a hand. This Panda has seven joints, like your own arm: hold your hand
+      on the table, and your elbow can still move. fpbm_cpp computes the motion of all joints, a thousand times a
+      second.`,
     weights: [1, 1, 1, 1, 1, 1, 1],
   },
   {
     spare: "four redundant joints",
-    story: `Three joints are enough for any position of a hand. This Panda has seven, so its joints can move while its
-      hand stays in place. fpbm_cpp computes the motion of all joints, a thousand times a second.`,
+    story: `Three joints are enough for any position of a hand. This Panda has seven joints, so the joints can move
+      while the hand stays in place. fpbm_cpp computes the motion of all joints, a thousand times a second.`,
     weights: [1, 1, 1, 1, 1, 1, 1],
   },
 ];
@@ -46,8 +47,8 @@ export function describe({ status, dragging, following, resting, damped, limited
   if (off && !leads && !dragging && (status === STALLED || turning < 0.05)) {
     return "The arm is at rest away from its target: this scheme has no feedback of the tip error.";
   }
-  if (status === RECOVERING) return "The arm made no progress. It moves to a remembered posture, and tries again.";
-  if (status === STALLED) return "The arm makes no progress. It stays at rest until the target moves.";
+  if (status === RECOVERING) return "The arm made no progress, and moves to a remembered posture.";
+  if (status === STALLED) return "The arm makes no progress, and stays at rest until the target moves.";
   if (status > STALLED) return "The posture is singular: the tip cannot move in every direction. The arm brakes.";
   if (dragging && status === SLOWED) return "A joint is at its limit: other joints take over, or the tip slows down.";
   if (dragging && status === DAMPED) return "Near a singular posture, the tip cannot move in every direction.";

@@ -11,7 +11,7 @@ from measures import Measures, measure
 from pointing import DT, Motion, Scene, pursue
 from resolved import by_saturate, by_tracker
 
-GAINS = (1 / DT, 100.0, 30.0)  # k1 [1/s]; the first is the published law.
+GAINS = (1 / DT, 100.0, 30.0)  # k1 [1/s]; the first gain is the published law.
 SATURATE = "`fp.saturate`, scale of SNS"
 
 

@@ -54,7 +54,7 @@ def problem(number: int) -> tuple[Array, Array]:
 
 
 def solve(start: Array, goal: Array, scheme: fp.Scheme, limits: fp.JointLimits, dt: float, error_bound: float) -> Found:
-    """At acceleration level the gains are those of critical damping: k1 = 2 k, k2 = k^2."""
+    """At acceleration level, the gains give critical damping: k1 = 2 k, k2 = k^2."""
     tip = fp.PositionTask(name="tip", k=10, k1=20, k2=100)
     posture = fp.PostureTask(np.zeros(7), name="posture", k=1, k1=2, k2=1)
     stack = fp.Stack(tip, posture)

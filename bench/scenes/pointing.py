@@ -84,7 +84,7 @@ def desired_speed(kp: float, kd: float, error: Array, velocity: Array) -> Array:
 
 
 def pursue(scene: Scene, step: Step, longest: float = LONGEST) -> Motion:
-    """Moves to all vertices, one after another, for at most so many seconds."""
+    """Moves to all vertices, one after another, for at most `longest` seconds."""
     arm, q, qd = scene.arm, scene.q0, np.zeros_like(scene.q0)
     states, velocities, k = [q], [qd], 0
     scales: list[Array] = []

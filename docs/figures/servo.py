@@ -3,7 +3,7 @@
     python docs/figures/servo.py [where to write the picture]
 
 Needs the dependency groups 'browser' and 'peers' (for the Panda's meshes), and chromium. Without a graphics processor
-it takes a minute.
+this script takes a minute.
 """
 
 from __future__ import annotations

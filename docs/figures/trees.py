@@ -2,7 +2,7 @@
 
     python docs/figures/trees.py [folder to write the films to]
 
-The motions are those of examples 16 to 18. Needs the dependency group 'peers' (for the robots' URDF files). One minute.
+The motions are from examples 16 to 18. Needs the dependency group 'peers' (for the robots' URDF files), and one minute.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
     python docs/figures/viewer.py [where to write the picture]
 
 Needs the dependency groups 'browser' and 'peers' (for the Panda's meshes), and chromium. Without a graphics processor
-it takes minutes.
+this script takes minutes.
 """
 
 from __future__ import annotations

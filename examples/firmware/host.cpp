@@ -2,7 +2,7 @@
 
 #include "report.hpp"
 
-// The same motions on a PC, for comparison.
+// The motions of the firmware on a PC, for comparison.
 int main() {
   const auto print = [](const char* text) { std::fputs(text, stdout); };
   const auto nothing = [] { return std::uint32_t{0}; };

@@ -106,7 +106,7 @@ void states(Robot& robot) {
   for (const double v : robot.velocity) command = std::max(command, std::abs(v));
   check(moving > 0.01 && command == 0.0, "deactivated in motion: velocity command [rad/s]", command);
 
-  robot.q[3] = 0.5;  // Beyond its range.
+  robot.q[3] = 0.5;  // Beyond the range of joint 4.
   check(!robot.activate() && logged("panda_joint4"), "not activated beyond a limit, joint named", 1);
 }
 

@@ -81,7 +81,7 @@ CallbackReturn TargetController::on_error(const rclcpp_lifecycle::State&) {
   return CallbackReturn::SUCCESS;
 }
 
-/// Constructs only objects of fixed size within the controller: the controller manager may call this in its loop.
+/// Constructs only objects of fixed size within the controller: the loop of the manager may call this function.
 CallbackReturn TargetController::on_activate(const rclcpp_lifecycle::State&) {
   try {
     motion_->begin(start());

@@ -11,7 +11,7 @@ namespace fpbm_controllers {
 namespace {
 
 constexpr int kLevels = 4;    // Levels of an fpbm::AnyStack,
-constexpr int kPerLevel = 2;  // and tasks of frames on each.
+constexpr int kPerLevel = 2;  // and tasks of frames on each level.
 
 void require(bool good, const std::string& message) {
   if (!good) throw std::invalid_argument(message);

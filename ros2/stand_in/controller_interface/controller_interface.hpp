@@ -15,7 +15,7 @@
 #include <vector>
 
 // Stands in for ros2_control's header of this name and for the headers that it includes: only the members that the
-// controller uses. Command and state interfaces are references to numbers. Signatures are those of ros2_control 4.46
+// controller uses. Command and state interfaces are references to numbers. The signatures equal ros2_control 4.46
 // (Jazzy) and 6.8 (Rolling).
 namespace rclcpp_lifecycle {
 

@@ -3,7 +3,8 @@
 #include <mutex>
 #include <optional>
 
-// Stands in for realtime_tools' header of this name. Signatures are those of 3.11 (Jazzy) and 5.2 (Rolling).
+// Stands in for realtime_tools' header of this name. The signatures equal realtime_tools 3.11 (Jazzy) and
+// 5.2 (Rolling).
 namespace realtime_tools {
 
 template <typename T>
