@@ -19,7 +19,7 @@ import fpbm_cpp as fp
 
 franka = pytest.importorskip("pylibfranka", reason="pylibfranka cannot be imported", exc_type=ImportError)
 franky_sim = pytest.importorskip("franky_sim", reason="franky-sim cannot be imported", exc_type=ImportError)
-sys.path.insert(0, str(Path(__file__).parents[2] / "examples"))  # As for a script in this folder.
+sys.path.insert(0, str(Path(__file__).parents[2] / "examples"))  # As for a program in this folder.
 example = importlib.import_module("11_franka")
 
 PATH = fp.Circle(0.05, 2.0, time_law="quintic").in_plane("xy")

@@ -114,8 +114,8 @@ def _joints(
 def refine(links: list[Link], joints: list[TreeJoint], most: int, margin: float) -> None:
     """Cut links further, into at most `most` parts, if capsules are close and the links' hulls are not: see Gaps.
 
-    Of all cuts of either link, the cut with the least excess of the pair is made. Clearance does not check a pair that
-    is closer than the margin in all postures; no cut makes this pair a checked pair.
+    A step makes the cut, of all cuts of both links, with the least excess of the pair. Clearance does not check a pair
+    that is closer than the margin in all postures; no cut makes this pair a checked pair.
     """
     gaps = Gaps(links, link_frames(joints, postures([each.joint for each in joints], POSTURES)), margin)
     given_up: set[tuple[int, int]] = set()

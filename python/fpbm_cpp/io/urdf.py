@@ -180,7 +180,7 @@ def _chain(branch: list[UrdfJoint], follows: Mapping[str, Follow]) -> tuple[list
     if not joints:
         names = listed(joint.name for joint in held)
         problem = f"all joints between base and tip mimic joints elsewhere: {names}"
-        raise ValueError(f"{problem}: at least one must have a drive: give another base or tip")
+        raise ValueError(f"{problem}: at least one joint must have a drive: give another base or tip")
     return joints, places, held
 
 
