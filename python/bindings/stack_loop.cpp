@@ -98,8 +98,8 @@ void StackLoop::reorder(const std::vector<int>& order) {
   const bool sound =
       order.size() == levels && std::all_of(order.begin(), order.end(), [count](int k) { return k < count; });
   if (!sound || !motion_.reorder(whole)) {
-    validation::reject(
-        "order", ": must have each level from 0 to " + std::to_string(count - 1) + " once, with an enabled level first");
+    validation::reject("order", ": must have each level from 0 to " + std::to_string(count - 1) +
+                                    " once, with an enabled level first");
   }
 }
 

@@ -445,7 +445,7 @@ def test_follower_is_held_where_the_base_is_below_its_leader(write) -> None:
     assert c.name == "c"
     np.testing.assert_allclose(c.placement, moved("revolute", [0, 0, 1], 0.3), rtol=0, atol=1e-15)
     assert error_message(file, "far", "mid") == (
-        "all joints between base and tip mimic joints elsewhere: 'b': at least one must have a drive: "
+        "all joints between base and tip mimic joints elsewhere: 'b': at least one joint must have a drive: "
         "give another base or tip"
     )
 
@@ -571,7 +571,7 @@ REJECTED = {
     ),
     three_links(Z + LIMIT, mimic("a", limit="")): f"joint 'b' is revolute: {NO_LIMIT}",
     three_links(Z + LIMIT, mimic("a")).replace("revolute", "fixed", 1): (
-        "all joints between base and tip mimic joints elsewhere: 'b': at least one must have a drive: "
+        "all joints between base and tip mimic joints elsewhere: 'b': at least one joint must have a drive: "
         "give another base or tip"
     ),
     robot(
