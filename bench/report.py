@@ -262,15 +262,15 @@ def limited(results: Results) -> list[str]:
             counts = (str(row[key]) for key in columns)
             scores.append([f"{', '.join(case)}: {LIMITED[library]}", *counts])
     return [
-        "Kinematics, scheme and limits, in random states whose scheme requires more than the limits allow:",
+        "Kinematics, scheme and limits, in random states in which the motion of the scheme exceeds the limits:",
         "",
         *comparison(results, "limited", LIMITED, kind="bounds"),
         "Times of the limits alone: the differences between the times with limits and the times without limits.",
         "",
         *comparison(results, "limits", LIMITED, kind="bounds"),
-        "Results for 10,000 problems, compared with this library, which solves all problems. With bounds on jerk, line",
-        "and s are of the second problem. The last column counts problems without a solution if the whole task",
-        "is an equality.",
+        "Results for 10,000 problems, compared with this library, which solves all problems. With bounds on jerk, the",
+        "task line and s are of the second problem. The last column counts problems without a solution if the whole",
+        "task is an equality.",
         "",
         *table(["arm, task, bounds: library", *columns.values()], scores),
     ]

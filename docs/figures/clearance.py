@@ -80,7 +80,7 @@ def slab(box: fp.Cuboid) -> list[np.ndarray]:
 
 
 def draw(axes: Any, clearance: fp.Clearance, q: np.ndarray, trail: np.ndarray) -> float:
-    """The arm, its surroundings and the nearest pair; returns their distance."""
+    """The arm, its surroundings and the nearest pair; returns the distance of this pair."""
     nearest = clearance.nearest(PANDA, q)
     frames = link_frames(PANDA, q)
     shapes = []

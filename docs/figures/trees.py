@@ -63,7 +63,7 @@ def draw(axes: Any, shapes: Sequence[Shape], seen: np.ndarray) -> None:
 
 
 def panda(robot: fp.Robot, q: np.ndarray, first: int, colour: str) -> list[Shape]:
-    """Capsules of the Panda whose first joint has this number, from the capsules of the preset."""
+    """Capsules of the Panda whose first joint has the index `first`, from the capsules of the preset."""
     names = [robot.joint_names[first + i] for i in range(7)]
     root = np.eye(4) if robot.joints[first].parent == 0 else robot.forward(q, robot.joint_names[first - 1])
     shift = robot.joints[first].joint.placement[:3, 3] * [1, 1, 0]
