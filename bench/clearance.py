@@ -22,7 +22,7 @@ def main() -> None:
     motions.add_argument("--workers", type=int, default=2)
     motions.add_argument("--minutes", type=float, default=60.0, help="stop after this time [min]")
     commands.add_parser("peers", help="motions with fpbm_cpp, Pink and Mink to the same targets")
-    post = commands.add_parser("post", help="a post that crosses a Panda's work space in MuJoCo")
+    post = commands.add_parser("post", help="a post that crosses a Panda's workspace in MuJoCo")
     post.add_argument("--motions", type=int, default=5, help="of each speed")
     for command in commands.choices.values():
         command.add_argument("--write", action="store_true", help=f"also write {RESULTS.name}/clearance_<command>.md")

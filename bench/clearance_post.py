@@ -95,7 +95,8 @@ def crossing(task: tuple[float, int, bool]) -> Crossing:
 
     clearance = replace(made.clearance, obstacles=[post(foot)], margin=MARGIN)
     scheme = fp.FPBM(0.6, np.ones(7), 20, 100, null_damping=2)
-    options = {"clearance": clearance if guarded else None, "stall_time": math.inf}  # The tip returns behind the post.
+    # After the crossing, the tip returns.
+    options = {"clearance": clearance if guarded else None, "stall_time": math.inf}
     tracker = fp.Tracker(made.arm, scheme, READY, limits=made.limits, **options)
     model, target = MADE["model"], tracker.tip
     data = mujoco.MjData(model)

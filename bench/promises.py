@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 PEERS = {"pinocchio": "Pinocchio + Eigen", "kdl": "KDL + Eigen"}
 # Some promises are relative to the earlier commit 8e7cfab. The Panda pose step of FPBM at 8e7cfab took 0.25 of the time
-# of Pinocchio + Eigen on a quiet machine (0.28 in the results of this commit, on a busy machine). bench/README.md
+# of Pinocchio + Eigen on a quiet machine (0.28 in the results of 8e7cfab, on a busy machine). bench/README.md
 # explains the use of this ratio. OLD_INSTRUCTIONS are the instructions of ticks at 8e7cfab by g++ 12. Limited ticks
 # were first counted at 02cf2e0.
 OLD_STEP = 0.25

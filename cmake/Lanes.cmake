@@ -1,6 +1,6 @@
-# Whether code in SIMD lanes can be compiled (FPBM_HAS_SIMD), also for all kinds of x86-64 processors (FPBM_HAS_LANES),
-# and the options for each kind. Some standard libraries have an incomplete header. Therefore, a program tries the
-# functions that the lanes need.
+# FPBM_HAS_SIMD: code in SIMD lanes can be compiled. FPBM_HAS_LANES: also for all kinds of x86-64 processors.
+# avx2_options, avx512_options: options for each kind. Some standard libraries have an incomplete header. Therefore, a
+# program tries the functions that the lanes need.
 include(CheckCXXCompilerFlag)
 include(CheckCXXSourceCompiles)
 set(CMAKE_REQUIRED_FLAGS ${CMAKE_CXX17_STANDARD_COMPILE_OPTION})
@@ -20,7 +20,7 @@ set(lane_options -fno-math-errno)
 set(avx2_options -mavx2 -mfma)
 set(avx512_options ${avx2_options} -mavx512f -mavx512dq -mavx512vl -mavx512bw -mprefer-vector-width=512)
 # By default, g++ copies structs of AVX2 vectors in parts of 16 bytes. A load of a whole vector then waits for two
-# stores. For AVX-512 the preferred width is the default.
+# stores. For AVX-512, the default is the preferred width.
 check_cxx_compiler_flag("-mmove-max=256 -mstore-max=256" FPBM_HAS_MOVE_MAX)
 if(FPBM_HAS_MOVE_MAX)
   list(APPEND avx2_options -mmove-max=256 -mstore-max=256)

@@ -57,7 +57,7 @@ breathe_show_include = False
 # Names of Eigen, of the standard library and of template parameters have no page here. bench/README.md has a page with
 # another name.
 nitpicky = True
-suppress_warnings = ["duplicate_declaration.cpp"]  # A namespace may stand in more than one header.
+suppress_warnings = ["duplicate_declaration.cpp"]  # Several headers may declare a namespace.
 nitpick_ignore_regex = [("cpp:.*", ".*"), ("myst", r"\.\./README\.md")]
 
 

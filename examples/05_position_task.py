@@ -11,8 +11,8 @@ arm = fp.SerialArm.preset("gen3")
 home = np.array([0, 0.26, pi, -2.27, 0, 0.96, pi / 2])  # [rad]
 path = fp.Lissajous((0.15, 0.1), 8.0, frequencies=(1, 2), phase=0.0, time_law="quintic").in_plane("yz")  # [m], [s]
 
-# The task determines three of the seven degrees of freedom. Without a secondary motion, the four others end in another
-# posture, and still move when the tip is at rest.
+# The task determines three of the seven degrees of freedom. Without a secondary motion, the arm ends in another
+# posture, and the joints still move when the tip is at rest.
 schemes = {
     "no secondary motion": fp.FPBM(0.6, np.ones(7), k1=20, k2=100),
     "rest posture": fp.FPBM(0.6, np.ones(7), k1=20, k2=100, null_damping=4, rest_posture=home, null_stiffness=4),

@@ -1,7 +1,7 @@
 """The upper body of a humanoid, a Unitree G1 of 17 joints, reaches forward, lifts and turns with both hands.
 
-Both hands are on the first level. The waist bends as far as the hands need. With the centre of mass of the robot on
-the second level, the arms move more and the waist less. The URDF file is from the package example-robot-data.
+Both hands are on the first level. The waist bends as far as the targets require. With the centre of mass of the robot
+on the second level, the arms move more and the waist less. The URDF file is from the package example-robot-data.
 """
 
 import sys

@@ -29,7 +29,7 @@ VCPKG_COMMAND=$scratch/vcpkg VCPKG_FORCE_SYSTEM_BINARIES=1 cmake -DCMD=BUILD -DP
     "-DVCPKG_PORT_CONFIGS=$vcpkg/ports/vcpkg-cmake/vcpkg-port-config.cmake;$vcpkg/ports/vcpkg-cmake-config/vcpkg-port-config.cmake" \
     -P "$vcpkg/scripts/ports.cmake"
 
-# In the format of the registry.
+# The package must have the format of the registry.
 fail() {
     echo "$*:" >&2
     find "$package" -type f -not -path '*/include/*' >&2

@@ -1,6 +1,6 @@
 """A planar arm whose bounds on acceleration are too small for the desired change of the tip velocity.
 
-Prints the angle between the tip acceleration by a Tracker and the missing velocity, the task scale of the Tracker, and
+Prints the angle between the tip acceleration by a Tracker and the velocity error, the task scale of the Tracker, and
 the task scale of SNS in the same state, by fp.saturate. With SNS, the angle is 0.
 """
 

@@ -1,4 +1,4 @@
-"""The hexagon of Flacco, De Luca and Khatib (IROS 2012) with the repository's model of the KUKA LWR 4.
+"""The hexagon of Flacco, De Luca and Khatib (IROS 2012) with the KUKA LWR 4 of lwr_segment.py.
 
 The paper gives centre, radius, start, gains and bounds, but not the lengths of the model. With the lengths of
 lwr_segment.py, one vertex is unreachable within the joint ranges. Therefore, table I of the paper cannot be compared.

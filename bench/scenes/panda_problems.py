@@ -1,4 +1,4 @@
-"""OpenSoT's inverse kinematics of a Panda: random starts and goals, a stack of two levels, position of link 8, posture.
+"""OpenSoT's inverse kinematics of a Panda: random starts and goals; levels: position of link 8, posture.
 
 Source: github.com/ADVRHumanoids/OpenSoT (9b81dca4). Parameters: examples/cpp/panda_ik.cpp: gains 0.1 and 0.01 in a step
 of 10 ms, postural reference 0, bounds on positions and velocities, success if the position error is at most 1 mm within

@@ -56,15 +56,17 @@ void tasks() {
   Given().add("tool", "left_flange", 1, "left_flange").refused("its own frame", "task.tool.reference_frame: is 'left_");
   Given()
       .add("tool", "left_flange", 1, "link_of_left_panda_joint7")
-      .refused("a reference that moves with the frame", "no joint moves link 'left_flange' in link 'link_of_left_");
-  Given().add("tool", "right_base").refused("a frame that no joint moves", "no joint moves link 'right_base' in link");
+      .refused("a reference that moves with the frame", "no joint moves link 'left_flange' relative to link");
+  Given()
+      .add("tool", "right_base")
+      .refused("a frame that no joint moves", "no joint moves link 'right_base' relative to");
   Given().add("tool", "left_flange", 5).refused("level 5", "task.tool.level: is 5: must be from 1");
   Given().add("tool", "left_flange", 0).refused("level 0", "task.tool.level: is 0: must be from 1");
   Given()
       .both()
       .add("right", "right_flange")
       .add("third", "right_flange")
-      .refused("three tasks on a level", "task.third.level: level 1 has 2 tasks before this one");
+      .refused("three tasks on a level", "task.third.level: level 1 already has 2 tasks");
   Given()
       .add("tool", "left_flange")
       .refused("two poses of one arm on a level", "task.tool.level: the poses of level 1");

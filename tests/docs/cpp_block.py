@@ -1,7 +1,7 @@
 """C++ blocks: compiled with warnings as errors; whole programs are also linked and run.
 
-A block that includes a header is a translation unit. Any other block is the body of a function, and an invisible block
-before contains the prerequisites, at namespace scope.
+A block that includes a header is a translation unit. Any other block is the body of a function. An invisible block
+before this block contains the prerequisites, at namespace scope.
 """
 
 from __future__ import annotations

@@ -28,7 +28,7 @@ def check_shell(example: Any) -> None:
         elif name.startswith("build/"):
             known_target(Path(name).name)
         else:
-            assert name in OTHERS, f"{name}: no command that is known here"
+            assert name in OTHERS, f"{name}: unknown command: add a check to CHECKS"
 
 
 def commands(block: str) -> list[list[str]]:

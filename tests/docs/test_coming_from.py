@@ -78,7 +78,7 @@ def require_loading(name: str, python: Path | str, folder: Path) -> None:
     """Skips the test if the packages of TSID and Pinocchio are incompatible: then, TSID aborts."""
     program = 'import tsid\ntsid.RobotWrapper("panda.urdf", [], False)'
     if name == "TSID" and subprocess.run([python, "-c", program], cwd=folder, capture_output=True).returncode != 0:
-        pytest.skip("TSID's package cannot load a robot beside this Pinocchio")
+        pytest.skip("TSID's package cannot load a robot with this Pinocchio")
 
 
 def errors(q: Any, target: Any) -> tuple[float, float]:

@@ -1,10 +1,10 @@
 """Every code block of the README and of docs/ works.
 
-Python is run, C++ compiled and whole programs run, CMake projects are built, and shell commands compared with the
-existing commands and files.
+Python is run. C++ is compiled, and whole programs are run. CMake projects are built. Shell commands are compared with
+the existing commands and files.
 
-Blocks of a page share their names, from top to bottom. Further prerequisites of a block, and the reason if it is
-skipped, are in a comment before it, which is not shown.
+Blocks of a page share their names, from top to bottom. A hidden comment before a block contains further prerequisites,
+and the reason if the block is skipped.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The installed package, with NumPy only; fails if a wheel is incomplete, or differs from its metadata.
+"""Checks the installed package, with NumPy only; fails if a wheel is incomplete, or differs from its metadata.
 
 usage: installed.py, with the Python that has the package installed
 """
@@ -28,12 +28,12 @@ def run(*command: str, **environment: str) -> "subprocess.CompletedProcess[str]"
 
 
 def the_package() -> str:
-    """Installed, of one version, and without a library that was not required."""
+    """The package is installed, has one version, and imports no optional library."""
     site = Path(sysconfig.get_path("platlib"))
     assert site in Path(fp.__file__).parents, f"{fp.__file__} is not in {site}"
     assert fp.__version__ == version("fpbm_cpp"), f"{fp.__version__} is not {version('fpbm_cpp')}"
     extras = {"click", "dask", "matplotlib", "scipy", "tqdm", "yourdfpy"} & sys.modules.keys()
-    assert not extras, f"import fpbm_cpp brings {extras}"
+    assert not extras, f"import fpbm_cpp also imports {extras}, which are optional"
     assert (site / "fpbm_cpp" / "py.typed").exists(), "py.typed is missing"
     return f"fpbm_cpp {fp.__version__}, Python {platform.python_version()}, NumPy {np.__version__}"
 
@@ -54,7 +54,7 @@ def a_sweep() -> str:
     off = np.abs(sweep.peak_velocity[0] - [np.abs(motion.qd).max() for motion in alone]).max()
     assert sweep.ok.all()
     assert off < 1e-12, f"off by {off:.1e} rad/s"
-    return f"{fp.LANES} side by side, off by {off:.1e} rad/s"
+    return f"lanes: {fp.LANES}, off by {off:.1e} rad/s"
 
 
 def every_lane() -> str:
@@ -68,7 +68,7 @@ def every_lane() -> str:
         child = run(sys.executable, __file__, "sweep", FPBM_LANES=kind)
         assert child.returncode == 0, child.stderr
         said[kind] = child.stdout.strip()
-    assert said["none"].startswith("1 side by side"), said["none"]
+    assert said["none"].startswith("lanes: 1,"), said["none"]
     return "; ".join(f"{kind}: {words}" for kind, words in said.items())
 
 

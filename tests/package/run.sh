@@ -43,8 +43,8 @@ flags=$(PKG_CONFIG_PATH="$prefix/share/pkgconfig" pkg-config --cflags fpbm)
 
 # As a subdirectory, which adds only the library, without our tests, examples or flags.
 configure -S "$consumer" -B "$scratch/subdirectory" -DFPBM_SOURCE_DIR="$source_dir"
-test ! -e "$scratch/subdirectory/fpbm/tests" || fail "add_subdirectory brought our tests along"
-test ! -e "$scratch/subdirectory/fpbm/examples" || fail "add_subdirectory brought our examples along"
+test ! -e "$scratch/subdirectory/fpbm/tests" || fail "add_subdirectory added the tests of fpbm"
+test ! -e "$scratch/subdirectory/fpbm/examples" || fail "add_subdirectory added the examples of fpbm"
 cmake --build "$scratch/subdirectory"
 "$scratch/subdirectory/consumer"
 
@@ -63,21 +63,21 @@ fetch() {
   configure -S "$consumer" -B "$scratch/$name" "$@"
 }
 fetch fetched -DFPBM_FETCH="$from"
-test ! -e "$scratch/fetched/_deps/fpbm-build/tests" || fail "FetchContent brought our tests along"
-test ! -e "$scratch/fetched/_deps/fpbm-build/examples" || fail "FetchContent brought our examples along"
+test ! -e "$scratch/fetched/_deps/fpbm-build/tests" || fail "FetchContent added the tests of fpbm"
+test ! -e "$scratch/fetched/_deps/fpbm-build/examples" || fail "FetchContent added the examples of fpbm"
 cmake --build "$scratch/fetched"
 "$scratch/fetched/consumer"
 
 fetch not_installed -DFPBM_FETCH="$from;FIND_PACKAGE_ARGS;0.1"
-test -e "$scratch/not_installed/_deps/fpbm-src" || fail "FIND_PACKAGE_ARGS did not fetch what is not installed"
+test -e "$scratch/not_installed/_deps/fpbm-src" || fail "FIND_PACKAGE_ARGS did not fetch fpbm, which is not installed"
 fetch already_installed -DFPBM_FETCH="$from;FIND_PACKAGE_ARGS;0.1" -DCMAKE_PREFIX_PATH="$prefix"
-test ! -e "$scratch/already_installed/_deps/fpbm-src" || fail "FIND_PACKAGE_ARGS fetched what is installed"
+test ! -e "$scratch/already_installed/_deps/fpbm-src" || fail "FIND_PACKAGE_ARGS fetched fpbm, which is installed"
 fetch overridden -DFPBM_FETCH="$from;OVERRIDE_FIND_PACKAGE" -DCMAKE_PREFIX_PATH="$prefix"
-test -e "$scratch/overridden/_deps/fpbm-src" || fail "OVERRIDE_FIND_PACKAGE took what is installed"
+test -e "$scratch/overridden/_deps/fpbm-src" || fail "OVERRIDE_FIND_PACKAGE used the installed fpbm"
 
 # In all cases, the project has only the include paths and C++17.
 for way in installed subdirectory fetched; do
   if grep -E '"command".* -[Wmf]' "$scratch/$way/compile_commands.json"; then
-    fail "Flags of ours reach the project: $way"
+    fail "The project has compiler flags of fpbm: $way"
   fi
 done

@@ -251,7 +251,7 @@ def test_shapes_and_their_frames(write) -> None:
 
 
 def test_parts_of_a_link_have_separate_capsules(write) -> None:
-    """Two capsules with a smaller volume: each part of an L is inside one of them, and so are the cut faces."""
+    """Two capsules have a smaller volume than one capsule. Every point of an L is inside a capsule."""
     long, across = (
         geometry('box size="0.1 0.1 0.8"', '<origin xyz="0 0 0.4"/>'),
         geometry('box size="0.8 0.1 0.1"', '<origin xyz="0.4 0 0"/>'),
@@ -490,7 +490,7 @@ def test_every_vertex_of_an_arm_is_inside_its_capsules(name: str, once) -> None:
                 whole = shape.moved(frame)
                 assert outside(whole.points, of_link[n], whole.sizes) <= 0.0
             else:
-                assert outside(points, of_link[n]) <= 0.002 * shape.cylinder[0]  # The prism contains the cylinder.
+                assert outside(points, of_link[n]) <= 0.002 * shape.cylinder[0]  # Points: a prism around the cylinder.
 
     arm = fp.SerialArm(joints, end)
     model = pin.buildModelFromUrdf(file)

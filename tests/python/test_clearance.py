@@ -16,7 +16,7 @@ from fpbm_cpp._types import Array
 
 PANDA = fp.SerialArm.preset("panda")
 READY = np.array([0.0, -0.7854, 0.0, -2.3562, 0.0, 1.5708, 0.7854])
-# Rough, by eye; hand and finger stand for a gripper.
+# Rough estimates; hand and finger represent a gripper.
 CAPSULES = (
     fp.Capsule(0, [-0.05, 0, 0.06], [0, 0, 0.12], 0.1, "base"),
     fp.Capsule(1, [0, 0, -0.15], [0, 0, 0], 0.07, "shoulder"),
@@ -41,7 +41,7 @@ def turned(rng: np.random.Generator, extent: float) -> Array:
 
 
 def frames(arm: fp.Arm, q: Array) -> list[Array]:
-    """Frames of all links, each the frame of its joint after its motion."""
+    """Frames of all links: the frames of the joints, displaced by the joint positions."""
     if isinstance(arm, fp.PlanarArm):
         arm = fp.SerialArm([fp.Joint(placement=shifted(x)) for x in (0, *arm.lengths[:-1])])
     assert isinstance(arm, fp.SerialArm)
@@ -401,7 +401,7 @@ URDF = ("arm.urdf", "--tip", "l7")
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """With an arm of seven joints, of which l0 and l2 may meet, and a table in a job."""
+    """A folder with an arm of seven joints, and a job with a table. The links l0 and l2 may touch."""
     links = "".join(f'<link name="l{i}">{LINK}</link>' for i in range(8))
     joints = "".join(
         f'<joint name="j{i}" type="revolute"><parent link="l{i - 1}"/><child link="l{i}"/><origin xyz="0 0 0.2"/>'

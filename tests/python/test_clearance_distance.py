@@ -1,9 +1,9 @@
 """Distances and normals of capsules, half-spaces and boxes against Coal (Pan, Chitta, Manocha 2012) and exact results.
 
-Coal has closed forms for two capsules, which lose digits if the capsules are short and nearly parallel, and for a
-capsule and a half-space. For a capsule and a box, Coal iterates (GJK, EPA) to a tolerance, and sometimes has no result
-if the shapes touch. Therefore, all pairs are compared with an enumeration of all features in extended precision. Pairs
-for which Coal agrees with this enumeration are also compared with Coal. The number of these pairs is printed and
+Coal has closed forms for two capsules, and for a capsule and a half-space. For two short and nearly parallel capsules,
+the closed form loses digits. For a capsule and a box, Coal iterates (GJK, EPA) to a tolerance, and sometimes has no
+result if the shapes touch. Therefore, all pairs are compared with an enumeration of all features in extended precision.
+Pairs for which Coal agrees with this enumeration are also compared with Coal. The number of these pairs is printed and
 asserted.
 """
 
@@ -25,7 +25,7 @@ EIGEN = Path("/usr/include/eigen3")
 PAIRS = 6_000  # Pairs of each kind in each round.
 ROUNDS = 2  # 167 for a million pairs of each kind.
 TOLERANCE = 1e-9
-APART = 1e-6  # Distance of cores at which a round-off error of 1e-15 leaves nine digits of a normal, by size.
+APART = 1e-6  # Distance of cores, divided by the size: a round-off error of 1e-15 leaves nine digits of a normal.
 
 Array = NDArray[np.float64]
 Exact = NDArray[np.longdouble]
@@ -94,7 +94,7 @@ def segments(rng: np.random.Generator, n: int) -> Array:
 
 
 def near(rng: np.random.Generator, first: Array) -> Array:
-    """Segments near other segments: parallel, crossing or touching, to 1e-18 and exactly; some far away."""
+    """Segments near other segments: parallel, crossing or touching, exactly or nearly (from 1e-18); some far away."""
     n = len(first)
     start, displacement = np.hsplit(segments(rng, n), 2)
     angle = np.where(some(rng, 0.3, n), 0, power(rng, -18, -1, n))
@@ -192,7 +192,7 @@ def exact_capsules(pairs: Array) -> tuple[Exact, Exact]:
 
 
 def exact_half_space(pairs: Array) -> tuple[Exact, Exact]:
-    """As exact_capsules(), for capsules and half-spaces: distance of the lower end. The difference has any length."""
+    """As exact_capsules(), for capsules and half-spaces: distance of the lower end, and a multiple of the normal."""
     a, b, r, n, offset = np.split(pairs.astype(np.longdouble), [3, 6, 7, 10], axis=1)
     return (np.minimum(dot(n, a), dot(n, b)) - r - offset)[:, 0], 100 * n
 
@@ -223,7 +223,7 @@ def exact_box(pairs: Array) -> tuple[Exact, Exact]:
 
 
 def gaps(kind: str, pairs: Array, normals: Array) -> Exact:
-    """Gap between the shapes of each pair along its normal: at most their distance, for any unit vector."""
+    """Gap between the shapes of each pair along a unit vector. The gap is at most the distance of the shapes."""
     n = normals.astype(np.longdouble)
     a, b, r = np.split(pairs[:, :7].astype(np.longdouble), [3, 6], axis=1)
     lowest = np.minimum(dot(n, a), dot(n, b)) - r
@@ -285,14 +285,14 @@ def test_distances_and_normals_are_exact_and_agree_with_coal(program: Path, kind
         ):
             count[what] += int(which.sum())
     print(
-        f"\n{name}: {count['pairs']} pairs, in {count['inside']} of which the first's core is in the second; "
-        f"off by {worst['exact']:.1e} m at most, along the normal by {worst['gap']:.1e} m, "
-        f"normals of {count['apart']} by {worst['normal']:.1e}; Coal is off by more than {TOLERANCE} in "
-        f"{count['pairs'] - count['coal']} and in {count['apart'] - count['coal normal']} normals, "
-        f"from the other results of Coal by {worst['coal']:.1e} m, {worst['coal normal']:.1e}"
+        f"\n{name}: {count['pairs']} pairs, {count['inside']} of them with the core of the first shape in the second; "
+        f"largest errors: distance {worst['exact']:.1e} m, gap along the normal {worst['gap']:.1e} m, "
+        f"{count['apart']} normals {worst['normal']:.1e}; the error of Coal exceeds {TOLERANCE} in "
+        f"{count['pairs'] - count['coal']} distances and {count['apart'] - count['coal normal']} normals; "
+        f"the other results of Coal differ by at most {worst['coal']:.1e} m, {worst['coal normal']:.1e}"
     )
     assert worst["exact"] <= TOLERANCE
-    assert worst["gap"] <= TOLERANCE  # With the line above: no other vector has a larger gap, also in contact.
+    assert worst["gap"] <= TOLERANCE  # Therefore, no other vector has a larger gap, also in contact.
     assert worst["normal"] <= TOLERANCE
     assert worst["coal"] <= 2 * TOLERANCE
     assert worst["coal normal"] <= 2 * TOLERANCE

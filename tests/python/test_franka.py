@@ -1,4 +1,4 @@
-"""The tracker through the real libfranka, against a simulated robot that speaks its protocol.
+"""The tracker through the real libfranka, against a simulated robot with libfranka's protocol.
 
 The simulated robot follows every command. Therefore the commands are checked here, by libfranka's own conditions.
 """
@@ -19,7 +19,7 @@ import fpbm_cpp as fp
 
 franka = pytest.importorskip("pylibfranka", reason="pylibfranka cannot be imported", exc_type=ImportError)
 franky_sim = pytest.importorskip("franky_sim", reason="franky-sim cannot be imported", exc_type=ImportError)
-sys.path.insert(0, str(Path(__file__).parents[2] / "examples"))  # As for a program in this folder.
+sys.path.insert(0, str(Path(__file__).parents[2] / "examples"))  # As Python does for a program in this folder.
 example = importlib.import_module("11_franka")
 
 PATH = fp.Circle(0.05, 2.0, time_law="quintic").in_plane("xy")
@@ -55,7 +55,7 @@ def violated_conditions(t: np.ndarray, q: np.ndarray) -> set[str]:
     """The conditions that commands q [rad] at times t [s] violate.
 
     Velocity: libfranka 0.21, joint_velocity_limits.h, with the position-based limits of the robot's URDF, at the
-    position commanded before. The other conditions: limitRate() in src/rate_limiting.cpp, whose clamps are conditions
+    previous commanded position. The other conditions: limitRate() in src/rate_limiting.cpp, whose clamps are conditions
     here.
     """
     lower, upper, fastest = (joint_limits("limit", name) for name in ("lower", "upper", "velocity"))
@@ -221,7 +221,7 @@ def test_the_targets_are_reached(drive):
 
 
 class Interrupted:
-    """A Ctrl-C after so many cycles."""
+    """A Ctrl-C after a number of cycles."""
 
     def __init__(self, cycles: int) -> None:
         self.left = cycles

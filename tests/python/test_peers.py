@@ -77,7 +77,7 @@ def read_urdf(path: str, tip: str) -> tuple[list[Link], Array]:
             links.insert(0, Link(after, axis / np.linalg.norm(axis), joint.get("type") == "prismatic"))
             after = placement
         tip = joint.find("parent").get("link")
-    # Each placement was stored with the next link: shift by one.
+    # Each placement was stored with the previous link: shift by one.
     placements = [after, *(link.placement for link in links)]
     return [link._replace(placement=p) for link, p in zip(links, placements)], placements[-1]
 
@@ -117,7 +117,7 @@ def pinocchio(robot: Robot) -> Kinematics:
     zero = pin.neutral(model)
 
     def kinematics(q: Array, qd: Array) -> tuple[Array, Array, Array]:
-        # A joint without bounds has its sine and cosine for q.
+        # Pinocchio represents the position of a joint without bounds by its cosine and sine.
         pin.computeJointJacobiansTimeVariation(model, data, pin.integrate(model, zero, q), qd)
         return (
             pin.updateFramePlacement(model, data, end).homogeneous,
@@ -297,7 +297,7 @@ def test_presets_agree_with_manipulapy(name):
     file, tip, tolerance = OTHERS[name]
     path = Path(package.origin).parent / "ManipulaPy_data" / file
     links, end = read_urdf(str(path), tip)
-    if name.startswith("ur"):  # The preset's base is the controller's, from which ROS turns base_link half round.
+    if name.startswith("ur"):  # The preset has the controller's base. ROS rotates base_link by half a turn.
         links[0] = links[0]._replace(placement=frame(rotation(np.eye(3)[2], np.pi), np.zeros(3)) @ links[0].placement)
     preset = fp.SerialArm.preset(name)
     other = fp.SerialArm.from_joints(
@@ -307,7 +307,7 @@ def test_presets_agree_with_manipulapy(name):
         np.testing.assert_allclose(preset.forward(q), other.forward(q), rtol=0, atol=tolerance)
         np.testing.assert_allclose(preset.jacobian(q, task="pose"), other.jacobian(q, task="pose"), atol=tolerance)
 
-    # The preset's ranges are within the URDF's: Kinova's URDF has wider ranges, and UR's has half the elbow's range.
+    # The URDF of Kinova has wider ranges than the preset. The URDFs of UR have half of the preset's range of the elbow.
     limits = [limit for joint in ElementTree.parse(path).findall("joint") if (limit := joint.find("limit")) is not None]
     lower = [float(limit.get("lower", -np.inf)) for limit in limits[: preset.dof]]
     upper = [float(limit.get("upper", np.inf)) for limit in limits[: preset.dof]]

@@ -43,14 +43,14 @@ def motion(tracker, references, ticks):
 
 
 def excess(limits, q, qd0=0.0):
-    """How far positions exceed the bounds of positions, velocities and accelerations, by differences."""
+    """Largest excess over the bounds on positions, velocities and accelerations, by differences of q."""
     qd = np.diff(q, axis=0) / DT
     qdd = np.diff(qd, axis=0) / DT
     return max(
         (limits.lower - q).max(),
         (q - limits.upper).max(),
         (np.abs(qd) - limits.velocity).max(),
-        (np.abs(qdd) - limits.acceleration).max() * 1e-3,  # Digits of q by dt^2.
+        (np.abs(qdd) - limits.acceleration).max() * 1e-3,  # Round-off error of q / dt^2.
     )
 
 
@@ -99,7 +99,7 @@ def test_a_cup_stays_upright(panda, balanced):
 
 
 def random_stack(rng, arm):
-    """One to four levels, some with two tasks."""
+    """Two to four levels, some with two tasks."""
     frames = ["tip", *arm.joint_names[1:]]
     planar = isinstance(arm, fp.PlanarArm)
 
@@ -172,7 +172,7 @@ def test_a_slow_approach_does_not_keep_lower_tasks_moving():
 @pytest.mark.parametrize("name", ["panda", "gen3"])
 @pytest.mark.parametrize("k1", [10, 40])
 def test_a_lower_level_does_not_disturb_a_higher_one(name, k1):
-    """The first level moves equally if the lower level meets limits, holds its target, or is missing (ticks by RK4)."""
+    """The motion of the first level is equal if the lower level meets limits, holds its target, or is missing (RK4)."""
     arm = fp.SerialArm.preset(name)
     q0 = {"panda": READY, "gen3": [0.0, 0.3, 0.0, 1.6, 0.0, 1.2, 0.0]}[name]
     scheme = fp.Balanced(0.6, [1, 2, 3, 4, 3, 2, 1], null_damping=2)

@@ -1,4 +1,4 @@
-"""Sweeps: the same motions as simulate()'s, with every executor, and clear messages about missing motions."""
+"""Sweeps: the same motions as by simulate(), with every executor, and clear messages about missing motions."""
 
 import importlib.util
 import os
@@ -94,8 +94,8 @@ def expect_agreement(lanes, alone):
     """Two sweeps are equal up to round-off."""
     np.testing.assert_array_equal(lanes.status, alone.status)
     for name in FIGURES:
-        differences = name in ("peak_acceleration", "final_acceleration")  # Differences of velocities, at velocity
-        # level.
+        # At velocity level, accelerations are differences of velocities.
+        differences = name in ("peak_acceleration", "final_acceleration")
         tolerance = 1e-10 if differences else 1e-12
         np.testing.assert_allclose(getattr(lanes, name), getattr(alone, name), tolerance, tolerance, err_msg=name)
 
@@ -445,7 +445,7 @@ def test_ctrl_c_leaves_no_lock_acquired(arm):
 
 
 def interrupted(script, *arguments):
-    """Sends Ctrl-C a second after a script prints 'begun': the printed number of motions, and the delay [s]."""
+    """Sends Ctrl-C a second after a script prints 'begun'. Returns the printed number of motions, and the delay [s]."""
     command = [sys.executable, str(script), *map(str, arguments)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as child:
         assert child.stdout.readline() == "begun\n"
@@ -468,7 +468,7 @@ import numpy as np
 import fpbm_cpp as fp
 
 def main(executor, hold):
-    signal.signal(signal.SIGINT, signal.default_int_handler)  # A background job inherits that it is ignored.
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # A background job inherits an ignored SIGINT.
     q0s = np.tile(np.pi / np.array([12, 12, 15, 15]), (50000, 1))
     with eval(executor) as pool:
         if pool is not None:
@@ -484,7 +484,7 @@ if __name__ == "__main__":
 """
 
 
-@pytest.mark.skipif(os.name == "nt", reason="signals are sent otherwise there")
+@pytest.mark.skipif(os.name == "nt", reason="SIGINT cannot be sent to a process on Windows")
 @pytest.mark.parametrize(
     ("executor", "hold"),
     [
@@ -496,7 +496,7 @@ if __name__ == "__main__":
     ],
 )
 def test_ctrl_c_stops_immediately(tmp_path, executor, hold):
-    """Also during a motion of 100 million steps (15 s or more), unless in another process, which is not waited for."""
+    """Also during a motion of 100 million steps (15 s or more). The sweep does not wait for other processes."""
     script = tmp_path / "script.py"
     script.write_text(SCRIPT)
     done, elapsed = interrupted(script, executor, hold)

@@ -1,4 +1,4 @@
-"""The filter of targets from Python: in minimum time by Ruckig, for a stream, and for invalid messages."""
+"""The filter of targets from Python: compared with Ruckig's minimum time, for a stream, and for invalid messages."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ ANGULAR = {"angular_velocity": 1.5, "angular_acceleration": 8.0, "angular_jerk":
 
 
 def moved(target_filter, ticks):
-    """x, xd and xdd at the start of each of so many ticks, and at the end."""
+    """x, xd and xdd at the start of each tick, and at the end."""
     states = [(target_filter.x, target_filter.xd, target_filter.xdd)]
     for _ in range(ticks):
         target_filter.advance()
@@ -26,7 +26,7 @@ def assert_within(x, xd, xdd, *, velocity, acceleration, jerk):
     assert np.abs(xd).max() <= velocity * (1 + 1e-12)
     assert np.abs(xdd).max() <= acceleration * (1 + 1e-12)
     assert np.abs(np.diff(xdd, axis=0)).max(initial=0) <= jerk * DT * (1 + 1e-9)
-    # The filter ends on a target whose distance is a millionth of the displacement in a tick; and round-off.
+    # Tolerances: the last step to the target, a millionth of the displacement in a tick, and the round-off error.
     size = np.abs(x).max()
     assert np.abs(np.diff(x, 3, axis=0)).max(initial=0) <= jerk * DT**3 * (1 + 1e-5) + 8e-16 * size
 
@@ -94,7 +94,7 @@ def test_does_not_lag_behind_a_stream(learnt):
     rng = np.random.default_rng(7)
     stamps = np.arange(0, 5, 1 / 30)
     delays = rng.uniform(0, 0.02, stamps.size)
-    delays[0] = 0  # So a learnt clock is correct from the start.
+    delays[0] = 0  # Then the estimated offset of the clock is correct from the start.
     kept = (rng.random(stamps.size) > 0.1) | (stamps == 0)
     seen = sorted(zip((stamps + delays)[kept], stamps[kept]))
     velocity = np.array([0.45, -0.2, 0.03])
@@ -145,7 +145,7 @@ def test_invalid_messages_have_no_effect():
 
 @pytest.mark.parametrize(("bounds", "longest"), [((1.5, 8.0, 300.0), 1.15), ((3.0, 3.0, 10.0), 1.4)])
 def test_orientations_end_at_rest_without_chatter(bounds, longest):
-    """Slightly later than for the largest angle alone, and the acceleration does not oscillate more often."""
+    """Orientations end slightly later than the largest angle alone. The acceleration does not oscillate more often."""
     rng = np.random.default_rng(9)
     angular = dict(zip(ANGULAR, bounds))
     ratios = []
@@ -159,7 +159,7 @@ def test_orientations_end_at_rest_without_chatter(bounds, longest):
         assert np.abs(xd).max() <= bounds[0] * (1 + 1e-12)
         assert np.abs(xdd).max() <= bounds[1] * (1 + 1e-12)
         assert np.abs(np.diff(xdd, axis=0)).max() <= bounds[2] * DT * (1 + 1e-9)
-        # Up and down twice for the motion of the axis, and twice more for the effect of the other axes.
+        # The acceleration rises and falls twice for the motion of the axis, and twice more by the other axes.
         assert np.abs(np.diff(xdd, axis=0)).sum(axis=0).max() < 16 * bounds[1]
         away = (x != target).any(axis=(1, 2)) | (xd != 0).any(axis=1) | (xdd != 0).any(axis=1)
         assert not away[-1]
@@ -167,7 +167,7 @@ def test_orientations_end_at_rest_without_chatter(bounds, longest):
         alone.push(fp.rotation_vector(target[:3, :3]))
         single = moved(alone, 5000)
         ratios.append((np.flatnonzero(away)[-1] + 1) / arrivals(*single, fp.rotation_vector(target[:3, :3])).max())
-    print(f"of the largest angle's time: {np.mean(ratios):.3f}, at most {max(ratios):.3f}")
+    print(f"ratio to the time of the largest angle: mean {np.mean(ratios):.3f}, largest {max(ratios):.3f}")
     assert max(ratios) < longest
 
 

@@ -45,7 +45,7 @@ namespace {
   }
   throw std::invalid_argument(
       "joint '" + joint.name +
-      "': must be revolute, continuous, prismatic or fixed to be between base_frame and a frame");
+      "': is between base_frame and a frame, and is not revolute, continuous, prismatic or fixed: give another frame");
 }
 
 [[nodiscard]] fpbm::Joint<> joint_of(const urdf::Joint& described, const fpbm::Transform<>& placement) {

@@ -25,7 +25,7 @@ using Parameters = rclcpp::node_interfaces::NodeParametersInterface;
   return ParameterValue(std::vector<double>(integers.begin(), integers.end()));
 }
 
-/// Declares the parameter that an error message names as a number, if an integer was given.
+/// If an error message names a parameter with an integer value, declares this parameter as a floating-point number.
 [[nodiscard]] bool declare_as_double(Parameters& parameters, const std::string& message) {
   rcl_interfaces::msg::ParameterDescriptor descriptor;
   descriptor.read_only = true;

@@ -31,7 +31,7 @@ struct Axis {
   return std::atan2(fpbm::cross(a.direction, b.direction).norm(), a.direction.dot(b.direction));
 }
 
-/// Distance of two axes [m], with a sign unless the axes are parallel to 0.1 rad.
+/// Distance of two axes [m], with a sign unless the axes are parallel within 0.1 rad.
 [[nodiscard]] double distance(const Axis& a, const Axis& b) {
   const Vector between = b.point - a.point;
   const Vector normal = fpbm::cross(a.direction, b.direction);
@@ -43,7 +43,7 @@ struct Axis {
                          double preset) {
   std::ostringstream text;
   text << "arm: joint '" << joint << "': " << what << " is " << described << " in robot_description, and " << preset
-       << " in " << name << ": give the preset of the robot, or none and limits.acceleration";
+       << " in " << name << ": give the preset of the robot, or remove arm and give limits.acceleration";
   throw std::invalid_argument(text.str());
 }
 
@@ -56,7 +56,7 @@ void require_match(const fpbm::Chain<>& described, const std::string& tip, const
     throw std::invalid_argument("arm: " + name + " has " + std::to_string(preset.joints.size()) +
                                 " joints, and robot_description " + std::to_string(count) +
                                 " between base_frame and link '" + tip +
-                                "': give the preset of the robot, or none and limits.acceleration");
+                                "': give the preset of the robot, or remove arm and give limits.acceleration");
   }
   const std::vector<Axis> ours = axes_of(described);
   const std::vector<Axis> theirs = axes_of(preset);
@@ -65,7 +65,7 @@ void require_match(const fpbm::Chain<>& described, const std::string& tip, const
     if (joint.mimic.joint >= 0) {
       throw std::invalid_argument("arm: joint '" + joint.name +
                                   "' follows another joint in robot_description, but not in " + name +
-                                  ": give the preset of the robot, or none and limits.acceleration");
+                                  ": give the preset of the robot, or remove arm and give limits.acceleration");
     }
     for (std::size_t i = 0; i < j; ++i) {
       const std::string other = " of its axis from the axis of joint '" + described.joints[i].name + "'";

@@ -146,9 +146,9 @@ CallbackReturn TargetController::on_deactivate(const rclcpp_lifecycle::State&) {
 /// arm.
 ///
 /// An interface that another thread has locked is not an error: after an error, the controller manager would deactivate
-/// the controller in motion. The arm waits until all joints have taken a command. If the wait is too long, the motion
-/// restarts at rest at the last command, and the arm stops. If readings stay locked, the last reading deviates more and
-/// more from the command, and the arm stops.
+/// the controller in motion. The arm waits until all joints have accepted a command. If the wait is too long, the
+/// motion restarts at rest at the last command, and the arm stops. If readings stay locked, the last reading deviates
+/// more and more from the command, and the arm stops.
 return_type TargetController::update(const rclcpp::Time& time, const rclcpp::Duration& period) {
   if (!pace_.due(period.seconds())) {
     ++report_.early;

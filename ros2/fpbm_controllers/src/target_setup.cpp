@@ -38,7 +38,7 @@ namespace {
   return vector;
 }
 
-/// Throws if the joints of the parameters are not the joints of the tree with a drive.
+/// Throws if the joints of the parameters are not the driven joints of the tree.
 void require_joints(const std::vector<std::string>& given, const fpbm::Tree<>& tree) {
   std::vector<std::string> driven;
   std::string list;
@@ -77,7 +77,8 @@ void TargetController::read_parameters() {
   }
   if (params_.command_interfaces.empty() || params_.command_interfaces[0] != "position" ||
       params_.state_interfaces.empty() || params_.state_interfaces[0] != "position") {
-    throw std::invalid_argument("command_interfaces, state_interfaces: the first must be position");
+    throw std::invalid_argument(
+        "command_interfaces, state_interfaces: one list does not begin with position: put position first");
   }
   require_rate();
 
@@ -133,8 +134,8 @@ std::vector<MotionTask> TargetController::motion_tasks(const fpbm::Tree<>& tree)
     const int other = made.reference ? made.reference->link() : 0;
     if (made.frame.link() == other) {
       const std::string to = task.reference.empty() ? params_.base_frame : task.reference;
-      throw std::invalid_argument(task.frame_parameter() + ": no joint moves link '" + task.frame + "' in link '" + to +
-                                  "': give links that a joint moves relative to each other");
+      throw std::invalid_argument(task.frame_parameter() + ": no joint moves link '" + task.frame +
+                                  "' relative to link '" + to + "': give two links with a joint between them");
     }
     int& count = rows[static_cast<std::size_t>(task.level)];
     count += fpbm::Pose::kRows;

@@ -43,7 +43,7 @@ void require(bool good, const std::string& message) {
                     given.k2 > 0.0 ? given.k2 : params.scheme.k2};
   require(!task.frame.empty(), task.frame_parameter() + ": is empty: give the link that the task moves");
   require(task.frame != task.reference, task.parameter("reference_frame") + ": is '" + task.reference +
-                                            "', the task's own frame: give another link, or none for base_frame");
+                                            "', the task's own frame: give another link, or no link for base_frame");
   require(1 <= given.level && given.level <= kLevels,
           task.parameter("level") + ": is " + std::to_string(given.level) + ": must be from 1, the highest, to " +
               std::to_string(kLevels) + ": put the task on one of these levels");
@@ -66,9 +66,8 @@ std::vector<TaskSettings> task_settings(const target_controller::Params& params)
     tasks.push_back(named(params, name));
     const TaskSettings& task = tasks.back();
     require(++counts[static_cast<std::size_t>(task.level)] <= kPerLevel,
-            task.parameter("level") + ": level " + std::to_string(task.level + 1) + " has " +
-                std::to_string(kPerLevel) +
-                " tasks before this one, the largest number: put the task on another level");
+            task.parameter("level") + ": level " + std::to_string(task.level + 1) + " already has " +
+                std::to_string(kPerLevel) + " tasks, the largest number: put the task on another level");
   }
   require(counts[0] > 0, "tasks: no task has level 1: set the level of at least one task to 1, the highest priority");
   return tasks;
