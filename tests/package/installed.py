@@ -61,8 +61,8 @@ def every_lane() -> str:
     """A sweep with each type of lanes that this processor has, and without lanes."""
     kinds = ["none", *fp._core.processor_kinds()]
     if sys.platform == "linux" and platform.machine() == "x86_64":
-        excluded_pairs = [kind for kind in ("avx2", "avx512") if find_spec(f"fpbm_cpp._lanes_{kind}") is None]
-        assert not excluded_pairs, f"the wheel has no code for {excluded_pairs}"
+        missing = [kind for kind in ("avx2", "avx512") if find_spec(f"fpbm_cpp._lanes_{kind}") is None]
+        assert not missing, f"the wheel has no code for {missing}"
     said = {}
     for kind in kinds:
         child = run(sys.executable, __file__, "sweep", FPBM_LANES=kind)
