@@ -62,7 +62,7 @@ def test_output_of_a_reproduction(reproduction: package.Reproduction) -> None:
     assert result.stderr == "drawing Fig. 1 ...\n"
     assert all(table.text() in result.stdout for table in reproduction.tables)
     assert "1. W is large: corrected" in result.stdout
-    assert "18 cases, largest difference" in result.stdout
+    assert "18 cases agree to" in result.stdout
     assert result.stdout.isascii()
     assert max(map(len, result.stdout.splitlines())) <= 100
 

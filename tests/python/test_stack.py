@@ -450,7 +450,7 @@ def test_invalid_orders_have_no_effect(panda, balanced):
     tracker = fp.Tracker(panda, balanced, READY, stack=cup())
     tracker.enable(2, False)
     for order in ([0, 1], [0, 1, 2, 2], [0, 1, 2, 4], [-1, 0, 1, 2], [2, 0, 1, 3], []):
-        with pytest.raises(fp.ParameterError, match="order: must have each level from 0 to 3 once, and an enabled"):
+        with pytest.raises(fp.ParameterError, match="order: must have each level from 0 to 3 once, with an enabled"):
             tracker.reorder(order)
     same = fp.Tracker(panda, balanced, READY, stack=cup())
     same.enable(2, False)

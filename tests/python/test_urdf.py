@@ -453,7 +453,7 @@ def test_follower_is_held_where_the_base_is_below_its_leader(write) -> None:
 # Refused
 
 # Ends of messages.
-NO_LINKS = "links without a parent joint: none: must be one, the root: add the links of the robot"
+NO_LINKS = "links without a parent joint: none: must be one link, the root: add the links of the robot"
 NO_LINK = "does not exist: must be a <link> of the file: add the link, or correct the name"
 TREE_OF = "must form a tree: remove a joint of the loop"
 COUNT = "must be 1 to 64: give another base or tip"
