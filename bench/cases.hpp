@@ -125,11 +125,11 @@ struct Input {
   fpbm::Reference<Space, Scalar> reference;
 };
 
-/// Random states around a bent posture, within ±scatter [rad], that satisfy `wanted`, and references near the tip. The
-/// states are the same in every run. The states fit into the first-level cache, and are so many that the compiler
+/// Random states around a bent posture, within ±scatter [rad], that satisfy `accepted`, and references near the tip.
+/// The states are the same in every run. The states fit into the first-level cache, and are so many that the compiler
 /// cannot hoist computations out of the loop.
-template <typename Space, typename Arm, typename Wanted, int N = Arm::kDof>
-auto inputs(const Arm& arm, const fpbm::Vector<N>& bent, double scatter, Wanted wanted) {
+template <typename Space, typename Arm, typename Accepted, int N = Arm::kDof>
+auto inputs(const Arm& arm, const fpbm::Vector<N>& bent, double scatter, Accepted accepted) {
   std::mt19937 generator(1);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   const auto fill = [&](auto vector, double reach) {
@@ -143,7 +143,7 @@ auto inputs(const Arm& arm, const fpbm::Vector<N>& bent, double scatter, Wanted 
     do {
       state = {bent + fill(bent, scatter), fill(bent, 1.0)};
       arm.kinematics(state.q, kinematics);
-    } while (!wanted(kinematics));
+    } while (!accepted(kinematics));
     reference.x = Space::template displace<double>(kinematics.tip, fill(zero, 0.01));
     reference.xd = fill(zero, 0.5);
     reference.xdd = fill(zero, 0.5);

@@ -19,11 +19,11 @@ namespace {
 volatile std::uint64_t mark = 0;
 
 /// Selected jobs. If empty: all jobs.
-std::vector<std::string> wanted;
+std::vector<std::string> selected;
 
 template <typename Job>
 void count(const std::string& row, int calls) {
-  if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), row) == wanted.end()) return;
+  if (!selected.empty() && std::find(selected.begin(), selected.end(), row) == selected.end()) return;
   std::printf("%s\n", row.c_str());
   Job job;
   for (int i = 0; i < calls; ++i) job();  // The first call binds the libraries.
@@ -63,7 +63,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: valgrind --tool=callgrind --collect-atstart=no %s CALLS [JOB …]\n", argv[0]);
     return EXIT_FAILURE;
   }
-  wanted.assign(argv + 2, argv + argc);
+  selected.assign(argv + 2, argv + argc);
   const int calls = std::atoi(argv[1]);
   count<Nothing>("nothing", calls);
   count_steps<Case<Planar<4>, fpbm::Position<2>>>(calls);

@@ -47,7 +47,7 @@ def rows(results: Results) -> list[list[str]]:
             ("planar n = 4 step", "step/planar4/position/fpbm", "pinocchio", 0.13, "{:.2f}"),
         ):
             share = results.ratio(name, peer, library)
-            add(f"{step} of FPBM, {damping}: share of {PEERS[peer]}'s time", share, bar, text)
+            add(f"{step} of FPBM, {damping}: ratio to {PEERS[peer]}'s time", share, bar, text)
     for kind, lanes, bar in (("avx2", "in 4 lanes, AVX2", 0.20), ("avx512", "in 8 lanes, AVX-512", 0.14)):
         share = results.ratio(fpbm, "pinocchio", kind)
         old = share / OLD_STEP if share else None
@@ -56,7 +56,7 @@ def rows(results: Results) -> list[list[str]]:
         shares = [results.ratio(f"limited/{case}", qp) for qp in ("eiquadprog_rt", "eiquadprog_fast")]
         share = max((each for each in shares if each), default=None)
         words = case.replace("/", ", ") + (", two problems each" if case.endswith("jerk") else "")
-        add(f"limited step, {words}: share of the faster eiquadprog's time", share, 0.30, "{:.2f}")
+        add(f"limited step, {words}: ratio to the faster eiquadprog's time", share, 0.30, "{:.2f}")
     for job, before in OLD_INSTRUCTIONS.items():
         count, bar = instructions(results, job), 0.75 if job.endswith("tick") else 0.8
         share = count / before if count else None
@@ -64,7 +64,7 @@ def rows(results: Results) -> list[list[str]]:
     for robot, words in (("two_pandas", "two Pandas"), ("g1_upper_body", "G1's upper body")):
         for part, meaning in (("J", "J"), ("J_and_Jd", "J and J̇"), ("J_and_Jd_qd", "J and J̇q̇")):
             share = results.ratio(f"trees/{robot}/{part}", "pinocchio")
-            add(f"{meaning} of two frames of {words}: share of Pinocchio's time", share, 0.30, "{:.2f}")
+            add(f"{meaning} of two frames of {words}: ratio to Pinocchio's time", share, 0.30, "{:.2f}")
     for row, words, bar in (
         ("14/two_poses/free", "two poses of two Pandas, without limits", 5.0),
         ("g1_upper_body/grasp/limited", "three levels of G1's 17 joints, limits active", 15.0),
@@ -74,7 +74,7 @@ def rows(results: Results) -> list[list[str]]:
         add(f"tick: {words}", time / 1e3 if time else None, bar, "{:.1f} µs")
     torch, pose = (results.least(f"step/{row}/fpbm_damped/fpbm_cpp") for row in ("ur5e/torch", "panda/pose"))
     of_pose = torch / pose if torch and pose else None
-    add("UR5e step of FPBM, position and axis of the tip: share of a Panda pose step", of_pose, 1.1, "{:.2f}")
+    add("UR5e step of FPBM, position and axis of the tip: ratio to a Panda pose step", of_pose, 1.1, "{:.2f}")
     many = results.least("python/panda/pose/fpbm/fpbm_cpp_many")
     add("Panda pose step of FPBM from Python, 10,000 states a call, on one thread", many, 600.0, "{:.0f} ns")
     if results.values.get("isolated"):  # On a shared core, the tail depends on other programs.

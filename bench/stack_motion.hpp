@@ -81,9 +81,9 @@ struct Report {
   int position_active = 0;
   int velocity_active = 0;
   int acceleration_active = 0;
-  int limited = 0;            ///< Ticks in which the law of this library gives a motion outside the box.
-  std::vector<double> error;  ///< ‖x ⊖ f(q)‖ of the tip's position [m].
-  std::vector<double> lacks;  ///< ‖J₀u − b₀‖ / ‖b₀‖ in limited ticks.
+  int limited = 0;                ///< Ticks in which the law of this library gives a motion outside the box.
+  std::vector<double> error;      ///< ‖x ⊖ f(q)‖ of the tip's position [m].
+  std::vector<double> residuals;  ///< ‖J₀u − b₀‖ / ‖b₀‖ in limited ticks.
 };
 
 template <typename T>
@@ -109,11 +109,11 @@ Report move(Solver& solver, std::vector<Asked<Case>>& record) {
     Joints u;
     solver(asked, u);
     const bool limited = !ours.is_free(asked);
-    const Eigen::VectorXd wanted = ours.first_rows() * ours.desired();
+    const Eigen::VectorXd desired = ours.first_rows() * ours.desired();
     report.error.push_back(fpbm::task_error(ours.kinematics(), asked.reference.x).template head<3>().norm());
     if (limited) {
       ++report.limited;
-      report.lacks.push_back((ours.first_rows() * u - wanted).norm() / wanted.norm());
+      report.residuals.push_back((ours.first_rows() * u - desired).norm() / desired.norm());
     }
     auto& [q, qd] = asked.state;
     const Joints before = qd;

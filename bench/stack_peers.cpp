@@ -52,7 +52,7 @@ void print(const char* name, const Report& report, long unsolved) {
   for (const double error : report.error) square += error * error;
   std::printf(", \"error_rms\": %.5g, \"error_end\": %.3g, \"lacks_median\": %.4g, \"lacks_p90\": %.4g}",
               std::sqrt(square / static_cast<double>(report.error.size())), report.error.back(),
-              quantile(report.lacks, 0.5), quantile(report.lacks, 0.9));
+              quantile(report.residuals, 0.5), quantile(report.residuals, 0.9));
 }
 
 template <typename Case>

@@ -67,14 +67,14 @@ export class Drag {
   }
 
   key(event) {
-    const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
-    if (!way) return;
+    const direction = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    if (!direction) return;
     event.preventDefault();
     const step = 0.4 * this.stage.stage.size;
     const right = new Vector3().setFromMatrixColumn(this.stage.camera.matrixWorld, 0);
     const up = new Vector3().setFromMatrixColumn(this.stage.camera.matrixWorld, 1);
     const at = this.inWorld(this.asked.goal());
-    at.addScaledVector(right, step * way[0]).addScaledVector(up, step * way[1]);
+    at.addScaledVector(right, step * direction[0]).addScaledVector(up, step * direction[1]);
     this.asked.began();
     this.asked.moved(this.stage.world.worldToLocal(at).toArray());
     this.asked.ended();

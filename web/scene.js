@@ -27,7 +27,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
 import { ArmShapes } from "./shapes.js";
 
-const WAY = 600; // Number of points of the tip's path.
+const TRACE = 600; // Number of points of the tip's path.
 
 /// Camera, centre of the view, visible width and height [m], and size of the target [m].
 const STAGES = {
@@ -79,9 +79,9 @@ export class Stage {
     this.ghost = new ArmShapes(simulator, look, true);
     this.ghost.visible = false;
     this.target = target(stage.size, look.target);
-    this.way = way(look.target);
+    this.trace = trace(look.target);
     this.passed = 0;
-    this.world.add(this.arm, this.ghost, this.target, this.way, ...this.ground(look));
+    this.world.add(this.arm, this.ghost, this.target, this.trace, ...this.ground(look));
     this.sun.position.fromArray(this.flat ? [-2, 5, 8] : [1.2, 3, 1.6]);
     this.sun.target.position.fromArray(stage.at);
     const shadow = this.sun.shadow.camera;
@@ -146,17 +146,17 @@ export class Stage {
 
   /// Extends the path of the tip.
   pass(tip) {
-    const points = this.way.geometry.attributes.position;
-    if (this.passed === WAY) points.array.copyWithin(0, 3);
+    const points = this.trace.geometry.attributes.position;
+    if (this.passed === TRACE) points.array.copyWithin(0, 3);
     else this.passed += 1;
     points.array.set(tip, 3 * (this.passed - 1));
     points.needsUpdate = true;
-    this.way.geometry.setDrawRange(0, this.passed);
+    this.trace.geometry.setDrawRange(0, this.passed);
   }
 
   forget() {
     this.passed = 0;
-    this.way.geometry.setDrawRange(0, 0);
+    this.trace.geometry.setDrawRange(0, 0);
   }
 
   draw() {
@@ -179,9 +179,9 @@ function target(size, color) {
   return group;
 }
 
-function way(color) {
+function trace(color) {
   const geometry = new BufferGeometry();
-  geometry.setAttribute("position", new BufferAttribute(new Float32Array(3 * WAY), 3));
+  geometry.setAttribute("position", new BufferAttribute(new Float32Array(3 * TRACE), 3));
   geometry.setDrawRange(0, 0);
   const dots = { color, size: 3, sizeAttenuation: false };
   const points = new Points(geometry, new PointsMaterial({ ...dots, transparent: true, opacity: 0.7 }));

@@ -72,10 +72,10 @@ function material(color, ghost) {
 }
 
 function capsule(a, b, radius, how) {
-  const way = b.clone().sub(a);
-  const mesh = new Mesh(new CapsuleGeometry(radius, way.length(), 12, 32), how);
-  mesh.position.copy(a).addScaledVector(way, 0.5);
-  if (way.length() > 0) mesh.quaternion.setFromUnitVectors(UP, way.normalize());
+  const axis = b.clone().sub(a);
+  const mesh = new Mesh(new CapsuleGeometry(radius, axis.length(), 12, 32), how);
+  mesh.position.copy(a).addScaledVector(axis, 0.5);
+  if (axis.length() > 0) mesh.quaternion.setFromUnitVectors(UP, axis.normalize());
   return mesh;
 }
 

@@ -86,9 +86,9 @@ export class Show {
     this.simulator.ticks(ticks);
     const { reference, time } = this.simulator;
     if (!this.pushing) this.goal = [...reference];
-    const way = Math.hypot(...reference.map((x, i) => x - this.before[i]));
+    const change = Math.hypot(...reference.map((x, i) => x - this.before[i]));
     this.before = [...reference];
-    if (this.dragging || this.following || way > 1e-5) this.movedAt = time;
+    if (this.dragging || this.following || change > 1e-5) this.movedAt = time;
     if (this.resting && this.restedAt === null) {
       this.restedAt = time;
       this.pace = 1;

@@ -54,7 +54,7 @@ def panda(folder: Path, problems: int) -> Iterator[str]:
     yield f"## Panda, {problems} problems\n"
     yield (
         "| method | success rate | median time [s] | longest [s] | off the line / its length, median "
-        "| mean scale of each level | q [rad] | q̇ by Δq, share | q̈ by Δ²q, share |"
+        "| mean scale of each level | q [rad] | q̇ by Δq, relative | q̈ by Δ²q, relative |"
     )
     yield "|---|---:|---:|---:|---:|---:|---:|---:|---:|"
     rows = []

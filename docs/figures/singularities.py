@@ -54,9 +54,9 @@ class Motion:
         start = self.arm.forward(self.q0)
         if self.task == "position":
             return start + x, xd, xdd
-        wanted = start.copy()
-        wanted[:3, 3] += np.asarray(x)[:3, 3]
-        return wanted, xd, xdd
+        reference = start.copy()
+        reference[:3, 3] += np.asarray(x)[:3, 3]
+        return reference, xd, xdd
 
     def error(self, q: Vector, x: Any) -> Vector:
         tip = self.arm.forward(q)
@@ -171,13 +171,13 @@ def through_the_middle() -> Motion:
     arm = fp.SerialArm.preset("panda")
     singular = np.array([0, 0, 0, -1.6, 0, 3.330367060928, 0])
     displacement = np.array([0.1, 0.0, -0.3])
-    wanted = arm.forward(singular)
-    wanted[:3, 3] -= displacement / 2
+    goal = arm.forward(singular)
+    goal[:3, 3] -= displacement / 2
     q0 = singular.copy()
     in_plane = [1, 3, 5]
     for _ in range(50):  # Newton, by the three joints that move the tip in that plane.
         tip = arm.forward(q0)
-        error = np.concatenate([wanted[:3, 3] - tip[:3, 3], fp.rotation_vector(wanted[:3, :3] @ tip[:3, :3].T)])
+        error = np.concatenate([goal[:3, 3] - tip[:3, 3], fp.rotation_vector(goal[:3, :3] @ tip[:3, :3].T)])
         q0[in_plane] += np.linalg.lstsq(arm.jacobian(q0, task="pose")[:, in_plane], error, rcond=None)[0]
     path = fp.Line(displacement, 4.0, time_law="quintic").with_rotation([0, 0, 0])
     return Motion("A Panda, on a line through a singular posture", arm, "pose", [1] * 7, q0, singular, path, 1.0)

@@ -57,9 +57,8 @@ class PyLimiter {
     const State<kDynamic> state = state_of(q, qd);
     const Vector<kDynamic> before = last_of(last);
     const Matrix<kDynamic, kDynamic> jacobian = matrix(J, "J", rows, dof());
-    const Vector<kDynamic> wanted = joint_vector(desired, "desired", dof());
-    return python(
-        limited_motion(any_, jacobian, state, wanted, before, bounds ? rows_of(*bounds, dof()) : LimiterRows{}));
+    const Vector<kDynamic> u = joint_vector(desired, "desired", dof());
+    return python(limited_motion(any_, jacobian, state, u, before, bounds ? rows_of(*bounds, dof()) : LimiterRows{}));
   }
 
   [[nodiscard]] PySaturatedMotion brake(const ArrayLike& q, const ArrayLike& qd, const OptionalArray& last) const {

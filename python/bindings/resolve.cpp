@@ -45,13 +45,13 @@ class PerState {
       : shared_(dimensions(given) == static_cast<int>(shape.size())),
         values_(real_array(given, name, static_cast<int>(shape.size()) + (shared_ ? 0 : 1))),
         size_(values_.size() / (shared_ ? 1 : std::max<py::ssize_t>(values_.shape(0), 1))) {
-    Shape wanted = shape;
-    if (!shared_) wanted.insert(wanted.begin(), states);
-    for (std::size_t i = 0; i < wanted.size(); ++i) {
-      if (values_.shape(static_cast<py::ssize_t>(i)) == wanted[i]) continue;
+    Shape required = shape;
+    if (!shared_) required.insert(required.begin(), states);
+    for (std::size_t i = 0; i < required.size(); ++i) {
+      if (values_.shape(static_cast<py::ssize_t>(i)) == required[i]) continue;
       std::string text;
-      for (const py::ssize_t each : wanted) text += (text.empty() ? "" : ", ") + std::to_string(each);
-      if (wanted.size() == 1) text += ",";
+      for (const py::ssize_t each : required) text += (text.empty() ? "" : ", ") + std::to_string(each);
+      if (required.size() == 1) text += ",";
       validation::reject(name, ": must have shape (" + text + "), got " + shape_text(values_));
     }
     for (py::ssize_t i = 0; i < values_.size(); ++i) {

@@ -111,12 +111,12 @@ class Parameter:
         return ParameterError(self.name, index[0] if index else None, value, f"{where} = {shown}: must be {demand}")
 
 
-def _fits(shape: tuple[int, ...], wanted: str) -> bool:
+def _fits(shape: tuple[int, ...], required: str) -> bool:
     """Whether a text like '(n,) or (n, n)' allows a shape; the shape of a number is ()."""
     return any(
         len(sizes) == len(shape)
         and all(size == str(n) or (size.isalpha() and shape[sizes.index(size)] == n) for size, n in zip(sizes, shape))
-        for sizes in (re.findall(r"\w+", each) for each in wanted.split(" or "))
+        for sizes in (re.findall(r"\w+", each) for each in required.split(" or "))
     )
 
 

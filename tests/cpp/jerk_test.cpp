@@ -64,9 +64,9 @@ template <Level kLevel>
     Vector<1> last(0.0);
     for (int tick = 0; tick < 8000; ++tick) {
       const auto box = limits.box(state, last);
-      Vector<1> wanted(asked(trial, tick, bounds, state, random));
-      if (kLevel == Level::kVelocity) wanted = state.qd + kTick * wanted;
-      const Vector<1> u = box.nearest(wanted);
+      Vector<1> desired(asked(trial, tick, bounds, state, random));
+      if (kLevel == Level::kVelocity) desired = state.qd + kTick * desired;
+      const Vector<1> u = box.nearest(desired);
       const double from = state.q(0);
       const double speed = state.qd(0);
       Vector<1> qdd = u;
@@ -374,8 +374,8 @@ TEST(Jerk, a_velocity_envelope_is_kept) {
     State<1> state{Vector<1>(0.0), Vector<1>(0.0)};
     Vector<1> last(0.0);
     for (int tick = 0; tick < 8000; ++tick) {
-      const Vector<1> wanted(asked(trial, tick, bounds, state, random));
-      const Vector<1> u = limits.box(state, last).nearest(wanted);
+      const Vector<1> desired(asked(trial, tick, bounds, state, random));
+      const Vector<1> u = limits.box(state, last).nearest(desired);
       ASSERT_LE(std::abs(u(0) - last(0)), (1.0 + kSlack) * bounds.jerk(0) * kTick);
       state.q += kTick * (state.qd + kTick / 2.0 * u);
       state.qd += kTick * u;

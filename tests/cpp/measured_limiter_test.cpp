@@ -43,16 +43,16 @@ void expect_bounds_at_any_age(std::uint32_t seed, int delay, Scalar tick) {
   now.q(0) = any(-0.45, 0.45) * range;
   std::vector<State<2, Scalar>> past(static_cast<std::size_t>(delay + 1), now);
   Joints u = Joints::Zero();
-  Joints wanted = u;
+  Joints desired = u;
   const int ticks = 3000;
   const int stop = seed % 5 == 0 ? ticks / 2 : ticks;
   for (int i = 0; i < ticks; ++i) {
     past[static_cast<std::size_t>(i % (delay + 1))] = now;
     const int old = std::min(i, jitter ? static_cast<int>(random.uniform(0.0, delay + 0.999)) : age);
     const State<2, Scalar>& seen = past[static_cast<std::size_t>((i - old) % (delay + 1))];
-    if (i % 200 == 0) wanted(0) = (random.uniform(0.0, 1.0) < 0.5 ? Scalar(1) : Scalar(-1)) * Scalar(1e6);
+    if (i % 200 == 0) desired(0) = (random.uniform(0.0, 1.0) < 0.5 ? Scalar(1) : Scalar(-1)) * Scalar(1e6);
     const Joints before = u;
-    u = i < stop ? limiter.motion(J, seen, wanted, before, Rows<2, 0, Scalar>{}).u : limiter.brake(seen, before).u;
+    u = i < stop ? limiter.motion(J, seen, desired, before, Rows<2, 0, Scalar>{}).u : limiter.brake(seen, before).u;
     ASSERT_LE(std::abs(u(0)), acceleration * (Scalar(1) + round_off));
     ASSERT_LE(std::abs(u(0) - before(0)), step * (Scalar(1) + round_off)) << "tick " << i;
     now.q += tick * (now.qd + tick / Scalar(2) * u);

@@ -351,7 +351,7 @@ TEST(TickGains, of_several_levels_are_stable_if_and_only_if_errors_decay) {
     for (int column = 0; column < 4; ++column) {
       const Vector<4> at = Vector<4>::Unit(column);
       const double middle = at(0) + at(1) / 2.0 + at(2) / 8.0;
-      const double by_task = feedback.share * at(2) - (1.0 - feedback.share) * x3 * at(3) -
+      const double by_task = feedback.previous_weight * at(2) - (1.0 - feedback.previous_weight) * x3 * at(3) -
                              feedback.velocity_gain * 2.0 * (middle - at(0)) - feedback.position_gain * middle;
       task.col(column) << at(0) + at(1) + by_task / 2.0, at(1) + by_task, by_task, at(3) + at(0);
       if (column == 3) continue;

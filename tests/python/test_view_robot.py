@@ -118,7 +118,7 @@ def test_each_hand_has_a_handle():
         for name in HANDS:
             np.testing.assert_allclose(handles[name].target, goals[name], atol=1e-6)
             assert f"from {name} to handle" in servo._readout._table.content
-        lines = servo._scene._way.points
+        lines = servo._scene._trace.points
         ends = {name: np.linalg.norm(lines - servo.tip[name][:3, 3], axis=2).min() for name in HANDS}
         assert max(ends.values()) < 1e-2  # The lines of both hands.
 

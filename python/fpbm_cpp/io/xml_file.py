@@ -55,8 +55,8 @@ class Element:
             found = []
         # No robot has numbers beyond 1e100, and products of smaller numbers do not overflow.
         if len(found) != len(default) or not all(abs(number) < 1e100 for number in found):
-            wanted = f"{len(default)} finite number{'s' * (len(default) > 1)}"
-            raise ValueError(f"{owner}: {tag} {key} = {text!r}: must be {wanted}")
+            required = f"{len(default)} finite number{'s' * (len(default) > 1)}"
+            raise ValueError(f"{owner}: {tag} {key} = {text!r}: must be {required}")
         return found
 
 

@@ -41,9 +41,9 @@ class LiveScene:
         self._tip.visible = not isinstance(loop.arm, Robot)
         self.handles = _handles(server, loop, 0.3 * radius)
         nothing = np.zeros((0, 2, 3), dtype=np.float32)
-        self._way, self._gap = (
+        self._trace, self._gap = (
             server.scene.add_line_segments(name, nothing, color, thickness=width, thickness_units="screen")
-            for name, color, width in (("/way", TIP, 4.0), ("/gap", TARGET, 2.0))
+            for name, color, width in (("/trace", TIP, 4.0), ("/gap", TARGET, 2.0))
         )
         self._shapes = None if loop.clearance is None else Shapes(server.scene, loop.arm, loop.clearance)
         draw_bounds(server.scene, loop.bounds)
@@ -76,7 +76,7 @@ class LiveScene:
             frames = [frames_of(loop.arm, q, "tip")]
             self._tip.position, self._tip.wxyz = frames[0][:3, 3], SO3.from_matrix(frames[0][:3, :3]).wxyz
         self._passed.append(np.array([frame[:3, 3] for frame in frames]))
-        self._way.points = np.concatenate([nothing, *map(segments, np.array(self._passed).swapaxes(0, 1))])
+        self._trace.points = np.concatenate([nothing, *map(segments, np.array(self._passed).swapaxes(0, 1))])
         if self._shapes is not None and loop.clearance is not None:
             nearest = None if loop.tick is None else loop.tick.nearest
             self._shapes.at(loop.clearance, q, None if nearest is None else nearest.pair)

@@ -98,10 +98,10 @@ class ServoLoop:
                 self.strip.add(ticks)
             return ticks
 
-    def drag(self, name: str, way: ArrayLike) -> None:
+    def drag(self, name: str, displacement: ArrayLike) -> None:
         """Move an obstacle to this displacement from its given place [m], with limited velocity and acceleration."""
         with self._lock:
-            self._obstacles.drag(name, np.array(way, dtype=float))
+            self._obstacles.drag(name, np.array(displacement, dtype=float))
 
     def stop(self) -> None:
         """Bring every joint to rest as fast as the limits allow."""

@@ -38,11 +38,11 @@ class Obstacles:
     def restart(self) -> None:
         """Move all obstacles to their given places."""
         self._goals: dict[str, Array] = {}
-        self._ways: dict[str, Array] = {}
+        self._displacements: dict[str, Array] = {}
         self._velocities: dict[str, Array] = {}
         self._moved: dict[str, Obstacle] = {}
 
-    def drag(self, name: str, way: Array) -> None:
+    def drag(self, name: str, displacement: Array) -> None:
         """Move a capsule or a box to this displacement from its given place [m], within SPEED and ACCELERATION.
 
         Raises ParameterError if no obstacle has that name.
@@ -50,25 +50,25 @@ class Obstacles:
         if name not in self._given:
             names = ", ".join(self._given) or "none"
             raise wrong("name", name, f" = {name!r}: must be one of the obstacles: {names}")
-        self._goals[name] = np.array(way, dtype=float)
+        self._goals[name] = np.array(displacement, dtype=float)
 
     def step(self, tracker: Tracker) -> None:
         """Move the obstacles that have a goal, by one tick."""
         for name, goal in [*self._goals.items()]:
-            before, velocity = self._ways.get(name, np.zeros(3)), self._velocities.get(name, np.zeros(3))
+            before, velocity = self._displacements.get(name, np.zeros(3)), self._velocities.get(name, np.zeros(3))
             left = goal - before
             distance, change = float(np.linalg.norm(left)), ACCELERATION * self._dt
             if distance <= change * self._dt and np.linalg.norm(velocity) <= 2 * change:
-                way, velocity = goal, np.zeros(3)
+                displacement, velocity = goal, np.zeros(3)
                 del self._goals[name]
             else:
                 # With half of the acceleration, the obstacle stops in time in spite of a delay of one tick.
-                wanted = left * min(SPEED, math.sqrt(ACCELERATION * distance)) / max(distance, math.ulp(1.0))
-                turn = wanted - velocity
+                desired = left * min(SPEED, math.sqrt(ACCELERATION * distance)) / max(distance, math.ulp(1.0))
+                turn = desired - velocity
                 velocity = velocity + turn * min(1.0, change / max(float(np.linalg.norm(turn)), math.ulp(1.0)))
-                way = before + self._dt * velocity
-            self._ways[name], self._velocities[name] = way, velocity
-            self._moved[name] = shifted(self._given[name], way)
+                displacement = before + self._dt * velocity
+            self._displacements[name], self._velocities[name] = displacement, velocity
+            self._moved[name] = shifted(self._given[name], displacement)
             tracker.move(name, self._moved[name], velocity)
 
 
@@ -76,11 +76,11 @@ def can_be_dragged(shape: Obstacle) -> bool:
     return not isinstance(shape, HalfSpace)
 
 
-def shifted(shape: Obstacle, way: Array) -> Obstacle:
+def shifted(shape: Obstacle, displacement: Array) -> Obstacle:
     """A capsule or a box, displaced [m]."""
     if isinstance(shape, Capsule):
-        return replace(shape, a=shape.a + way, b=shape.b + way)
+        return replace(shape, a=shape.a + displacement, b=shape.b + displacement)
     assert isinstance(shape, Cuboid)
     pose = shape.pose.copy()
-    pose[:3, 3] += way
+    pose[:3, 3] += displacement
     return replace(shape, pose=pose)

@@ -73,10 +73,10 @@ def _add(scene: SceneApi, name: str, shape: Obstacle, color: tuple[int, int, int
     """A shape at its given place."""
     looks = {"opacity": opacity, "cast_shadow": False, "position": centre(shape)}
     if isinstance(shape, Capsule):
-        way = shape.b - shape.a
-        length = float(np.linalg.norm(way))
+        axis = shape.b - shape.a
+        length = float(np.linalg.norm(axis))
         mesh = capsule_mesh(length, max(shape.radius, 1e-6), FACES)
-        turn = along(way) if length > 1e-12 else (1.0, 0.0, 0.0, 0.0)
+        turn = along(axis) if length > 1e-12 else (1.0, 0.0, 0.0, 0.0)
         return scene.add_mesh_simple(name, mesh.vertices, mesh.faces, color=color, wxyz=turn, **looks)
     if isinstance(shape, Cuboid):
         turn = SO3.from_matrix(shape.pose[:3, :3]).wxyz

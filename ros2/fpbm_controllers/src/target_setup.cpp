@@ -164,14 +164,14 @@ void TargetController::require_rate() const {
     throw std::invalid_argument("is_async: must be false, since a write could mix the commands of two ticks");
   const unsigned int own = get_update_rate();
   if (own > 0 && manager_rate_ % own == 0) return;
-  const auto wanted = static_cast<unsigned int>(get_node()->get_parameter("update_rate").as_int());
-  unsigned int below = std::min(std::max(wanted, 1U), manager_rate_);
+  const auto rate = static_cast<unsigned int>(get_node()->get_parameter("update_rate").as_int());
+  unsigned int below = std::min(std::max(rate, 1U), manager_rate_);
   unsigned int above = below;
   while (below > 1 && manager_rate_ % below != 0) --below;
   while (above < manager_rate_ && manager_rate_ % above != 0) ++above;
-  throw std::invalid_argument("update_rate: " + std::to_string(wanted) +
-                              " Hz does not divide the controller manager's " + std::to_string(manager_rate_) +
-                              " Hz: give " + std::to_string(below) + " or " + std::to_string(above));
+  throw std::invalid_argument("update_rate: " + std::to_string(rate) + " Hz does not divide the controller manager's " +
+                              std::to_string(manager_rate_) + " Hz: give " + std::to_string(below) + " or " +
+                              std::to_string(above));
 }
 
 TargetController::JointLimits TargetController::preset_limits(const fpbm::Tree<>& tree) const {

@@ -36,8 +36,8 @@ struct Direction {
     const bool unit = std::abs(cosine * cosine + square - Scalar(1)) <
                       Scalar(kUnitTolerance) * std::numeric_limits<Scalar>::epsilon();
     if (unit && cosine > Scalar(0) && square < Scalar(kLargestSquare)) {
-      const Scalar share = angle_over_sine(square);
-      return entrywise(axis, [&](Eigen::Index i) { return share * axis.coeff(i); });
+      const Scalar factor = angle_over_sine(square);
+      return entrywise(axis, [&](Eigen::Index i) { return factor * axis.coeff(i); });
     }
     const Scalar sine = std::sqrt(square);
     if (!(sine > Scalar(0))) {
@@ -51,8 +51,8 @@ struct Direction {
       axis = normalized(cross(y, aside));
       return entrywise(axis, [&](Eigen::Index i) { return static_cast<Scalar>(kPi) * axis.coeff(i); });
     }
-    const Scalar share = atan2(sine, cosine) / sine;
-    return entrywise(axis, [&](Eigen::Index i) { return share * axis.coeff(i); });
+    const Scalar factor = atan2(sine, cosine) / sine;
+    return entrywise(axis, [&](Eigen::Index i) { return factor * axis.coeff(i); });
   }
 
   /// y ⊕ d: y rotated by the rotation vector d.

@@ -21,7 +21,7 @@ class AxisSelfMotion {
   using Twice = Pair<Scalar>;
 
   [[nodiscard, gnu::noinline]] Mask<Scalar> factor(const Matrix<5, 6, Scalar>& J, int kind,
-                                                   const Scalar& share = Scalar(kCertain<Scalar>)) noexcept {
+                                                   const Scalar& threshold = Scalar(kCertain<Scalar>)) noexcept {
     joint_ = kJoints[kind];
     const auto linear = [&](int i) { return J.data() + 5 * joint_[i]; };
     const auto angular = [&](int row, int i) -> const Scalar& { return J.coeffRef(3 + row, joint_[i]); };
@@ -37,7 +37,7 @@ class AxisSelfMotion {
     const Scalar along = product(hand0, hand1, a12, a34, 0, 1);
     const Scalar gram = square0 * square1 - along * along;  // det AAᵀ
     const Scalar det = hand0.first() * hand1.second() - hand0.second() * hand1.first();
-    const Mask<Scalar> spans = Scalar(kSpans) * det * det > gram && gram > share * square0 * square1;
+    const Mask<Scalar> spans = Scalar(kSpans) * det * det > gram && gram > threshold * square0 * square1;
     if (none_of(spans)) return spans;
 
     const Twice over(Scalar(1) / det);
@@ -49,7 +49,7 @@ class AxisSelfMotion {
       X34_[i] = Twice(K_[i].first()) * a34[0] + Twice(K_[i].second()) * a34[1];
     }
     rest_.factor(left(three(linear(2), linear(3)), X12_), left(three(linear(4), linear(5)), X34_));
-    return spans && rest_.is_regular(share);
+    return spans && rest_.is_regular(threshold);
   }
 
   [[nodiscard, gnu::always_inline]] Vector<6, Scalar> null() const noexcept {

@@ -63,14 +63,14 @@ template <int N, typename Scalar, typename Basis>
     for (Eigen::Index i = 0; i < n; ++i) column[i] *= D.coeff(i);
     for (Eigen::Index k = 0; k < j; ++k) {
       const Scalar* const other = DZ.data() + k * n;
-      const Scalar share = paired_dot(other, column, n) / squares.coeff(k);
-      subtract_multiple(column, share, other, n);
-      subtract_multiple(z, share, Z.data() + k * n, n);
+      const Scalar coefficient = paired_dot(other, column, n) / squares.coeff(k);
+      subtract_multiple(column, coefficient, other, n);
+      subtract_multiple(z, coefficient, Z.data() + k * n, n);
     }
     squares.coeffRef(j) = squared_length(column, n);
-    const Scalar share = paired_dot<Scalar>(column, r.data(), n) / squares.coeff(j);
-    subtract_multiple<Scalar>(r.data(), share, column, n);
-    subtract_multiple<Scalar>(y.data(), -share, z, n);
+    const Scalar coefficient = paired_dot<Scalar>(column, r.data(), n) / squares.coeff(j);
+    subtract_multiple<Scalar>(r.data(), coefficient, column, n);
+    subtract_multiple<Scalar>(y.data(), -coefficient, z, n);
   }
   return y;
 }

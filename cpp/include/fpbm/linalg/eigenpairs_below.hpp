@@ -25,7 +25,7 @@ class EigenpairsBelow {
 
   /// Reads the lower triangle of A. If A is not finite, one eigenvalue is NaN.
   EigenpairsBelow(const Matrix<M, M, Scalar>& A, Scalar bound) noexcept
-      : T_(A), tridiagonal_(A.rows()), shares_(filled<Column>(A.rows())) {
+      : T_(A), tridiagonal_(A.rows()), factors_(filled<Column>(A.rows())) {
     const auto m = extent<M>(A.rows());
     Scalar zero(0);  // NaN if an entry is not finite.
     for (Eigen::Index j = 0; j < m; ++j) {
@@ -68,7 +68,7 @@ class EigenpairsBelow {
     Column v = fpbm::column(tridiagonal_.vectors, k);
     for (Eigen::Index i = m - 2; i-- > 0;) {
       const Scalar* const reflection = T_.data() + i * m;
-      subtract_multiple(v.data(), shares_(i) * paired_dot(reflection, v.data(), m), reflection, m);
+      subtract_multiple(v.data(), factors_(i) * paired_dot(reflection, v.data(), m), reflection, m);
     }
     return v;
   }
@@ -78,8 +78,8 @@ class EigenpairsBelow {
   /// entry is above kLeast, the squares of round-off errors keep all digits.
   static constexpr Scalar kLeast = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-128) : Scalar(1e-6);
 
-  /// T ← HᵀTH makes T tridiagonal, where H is a product of reflections I − share v vᵀ. values: the diagonal; beside(i):
-  /// entry (i + 1, i). Column k of T becomes v of reflection k.
+  /// T ← HᵀTH makes T tridiagonal, where H is a product of reflections I − factor v vᵀ. values: the diagonal;
+  /// beside(i): entry (i + 1, i). Column k of T becomes v of reflection k.
   void make_tridiagonal() noexcept {
     const auto m = extent<M>(T_.rows());
     const auto column = [&](Eigen::Index j) noexcept { return T_.data() + j * m; };
@@ -91,12 +91,12 @@ class EigenpairsBelow {
       const Scalar below = squared_length(v + k + 2, m - k - 2);
       if (!(below > Scalar(0))) continue;
       const Scalar length = std::sqrt(v[k + 1] * v[k + 1] + below);
-      shares_(k) = Scalar(1) / (length * (length + std::abs(v[k + 1])));
+      factors_(k) = Scalar(1) / (length * (length + std::abs(v[k + 1])));
       tridiagonal_.beside(k) = v[k + 1] > Scalar(0) ? -length : length;
       v[k + 1] -= tridiagonal_.beside(k);
       Column w = filled<Column>(m);
-      for (Eigen::Index j = k + 1; j < m; ++j) subtract_multiple(w.data(), -shares_(k) * v[j], column(j), m);
-      subtract_multiple(w.data(), shares_(k) / Scalar(2) * paired_dot(v, w.data(), m), v, m);
+      for (Eigen::Index j = k + 1; j < m; ++j) subtract_multiple(w.data(), -factors_(k) * v[j], column(j), m);
+      subtract_multiple(w.data(), factors_(k) / Scalar(2) * paired_dot(v, w.data(), m), v, m);
       for (Eigen::Index j = k + 1; j < m; ++j) {
         subtract_multiple(column(j), w(j), v, m);
         subtract_multiple(column(j), v[j], w.data(), m);
@@ -108,7 +108,7 @@ class EigenpairsBelow {
 
   Matrix<M, M, Scalar> T_;              ///< A/scale, then the vectors v of the reflections.
   Tridiagonal<M, Scalar> tridiagonal_;  ///< Tridiagonal form of A/scale.
-  Column shares_;
+  Column factors_;
   Scalar scale_{1};
   Eigen::Index found_ = 0;
 };

@@ -46,11 +46,11 @@ template <typename Scalar>
   Eigen::Index i = 0;
   if constexpr (kRowsInPairs<Scalar>) {
     using Two = Pair<Scalar>;
-    const Two share(s);
+    const Two factor(s);
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC unroll 8
 #endif
-    for (; i + 2 <= n; i += 2) (Two::load(a + i) - share * Two::load(b + i)).store(a + i);
+    for (; i + 2 <= n; i += 2) (Two::load(a + i) - factor * Two::load(b + i)).store(a + i);
   }
   for (; i < n; ++i) a[i] -= s * b[i];
 }

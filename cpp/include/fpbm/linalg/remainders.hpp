@@ -31,9 +31,9 @@ class Remainders {
     Eigen::Index row = -1;
     Scalar most(1);
     for (Eigen::Index j = first; j < square_.size(); ++j) {
-      const Scalar share = square_.coeff(j) * inverse_least_.coeff(j);
-      if (!(share > most)) continue;
-      most = share;
+      const Scalar ratio = square_.coeff(j) * inverse_least_.coeff(j);
+      if (!(ratio > most)) continue;
+      most = ratio;
       row = j;
     }
     return row;

@@ -13,14 +13,14 @@ namespace fpbm {
 ///
 /// The condition number of J enters the round-off error once, and not squared. All specialisations have the same
 /// functions:
-///   factor(J, kind, share)    false if the factorisation `kind`, 0 to kKinds − 1, is not accurate, or if |v|² is not
-///                             more than share times the largest possible |v|²
-///   null()                    v
-///   solve(b)                  y; b may be a vector of pairs
-///   along(t, g)               μᵀt, where Jᵀμ = g
-///   inverse_square(length)    an upper bound on 1/σ²_min(DJ), where D multiplies the angular rows by length [m]
+///   factor(J, kind, threshold)     false if the factorisation `kind`, 0 to kKinds − 1, is not accurate, or if |v|² is
+///                                  not more than threshold times the largest possible |v|²
+///   null()                         v
+///   solve(b)                       y; b may be a vector of pairs
+///   along(t, g)                    μᵀt, where Jᵀμ = g
+///   inverse_square(length)         an upper bound on 1/σ²_min(DJ), where D multiplies the angular rows by length [m]
 ///   rough_inverse_square(length)   the same or a larger upper bound, at lower cost
-///   inverse_trace()           tr((JJᵀ)⁻¹), whose reciprocal bounds σ²_min(J) from below, tight within a factor M
+///   inverse_trace()                tr((JJᵀ)⁻¹), whose reciprocal bounds σ²_min(J) from below, tight within a factor M
 template <int M, int N, typename Scalar>
 class SelfMotion;
 
@@ -37,7 +37,7 @@ class SelfMotion<2, 3, Scalar> {
   static constexpr int kKinds = 1;
 
   [[nodiscard]] Mask<Scalar> factor(const Matrix<2, 3, Scalar>& J, int,
-                                    const Scalar& share = Scalar(kCertain<Scalar>)) noexcept {
+                                    const Scalar& threshold = Scalar(kCertain<Scalar>)) noexcept {
     const Three<Scalar> a = {J(0, 0), J(0, 1), J(0, 2)};
     const Three<Scalar> b = {J(1, 0), J(1, 1), J(1, 2)};
     v_ = cross(a, b);
@@ -45,7 +45,7 @@ class SelfMotion<2, 3, Scalar> {
     const Scalar over = Scalar(1) / square;
     first_ = over * cross(b, v_);
     second_ = over * cross(v_, a);
-    return square > share * (dot(a, a) * dot(b, b));
+    return square > threshold * (dot(a, a) * dot(b, b));
   }
 
   [[nodiscard]] Vector<3, Scalar> null() const noexcept { return {v_.x, v_.y, v_.z}; }
@@ -78,10 +78,10 @@ class SelfMotion<3, 4, Scalar> {
   static constexpr int kKinds = 1;
 
   [[nodiscard]] Mask<Scalar> factor(const Matrix<3, 4, Scalar>& J, int,
-                                    const Scalar& share = Scalar(kCertain<Scalar>)) noexcept {
+                                    const Scalar& threshold = Scalar(kCertain<Scalar>)) noexcept {
     const auto column = [&](int i) { return J.data() + 3 * i; };
     S_.factor(three(column(0), column(1)), three(column(2), column(3)));
-    return S_.is_regular(share);
+    return S_.is_regular(threshold);
   }
 
   [[nodiscard]] Vector<4, Scalar> null() const noexcept {

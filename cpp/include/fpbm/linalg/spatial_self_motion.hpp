@@ -24,7 +24,7 @@ class SpatialSelfMotion {
   using Twice = Pair<Scalar>;
 
   [[nodiscard, gnu::noinline]] Mask<Scalar> factor(const Matrix<6, 7, Scalar>& J, int kind,
-                                                   const Scalar& share = Scalar(kCertain<Scalar>)) noexcept {
+                                                   const Scalar& threshold = Scalar(kCertain<Scalar>)) noexcept {
     using std::abs;
     joint_ = kJoints[kind];
     const auto linear = [&](int i) { return J.data() + 6 * joint_[i]; };
@@ -43,7 +43,7 @@ class SpatialSelfMotion {
     X12_ = hand(three(angular(3), angular(4)));
     X34_ = hand(three(angular(5), angular(6)));
     rest_.factor(left(three(linear(3), linear(4)), X12_), left(three(linear(5), linear(6)), X34_));
-    return spans && rest_.is_regular(share);
+    return spans && rest_.is_regular(threshold);
   }
 
   [[nodiscard, gnu::always_inline]] Vector<7, Scalar> null() const noexcept {

@@ -42,10 +42,12 @@ class ThreeByFour {
     largest_ = row(s12.x, s34.x) * row(s12.y, s34.y) * row(s12.z, s34.z);
   }
 
-  /// Whether |ṽ|² is more than share times its largest value, the product of the squared lengths of the rows of S. |ṽ|²
-  /// has its largest value if the rows are orthogonal. The round-off error of ṽ is proportional to the product of the
-  /// lengths of the rows.
-  [[nodiscard]] Mask<Scalar> is_regular(const Scalar& share) const noexcept { return square_ > share * largest_; }
+  /// Whether |ṽ|² is more than threshold times its largest value, the product of the squared lengths of the rows of S.
+  /// |ṽ|² has its largest value if the rows are orthogonal. The round-off error of ṽ is proportional to the product of
+  /// the lengths of the rows.
+  [[nodiscard]] Mask<Scalar> is_regular(const Scalar& threshold) const noexcept {
+    return square_ > threshold * largest_;
+  }
 
   /// |ṽ|²
   [[nodiscard]] const Scalar& null_square() const noexcept { return square_; }

@@ -65,9 +65,9 @@ void center_of_mass(const Robot<N, Scalar, Joints>& robot, const RobotState<N, S
     carrier.moment = plus(carrier.moment, Scalar(1), sums[i].moment);
     carrier.momentum = plus(carrier.momentum, Scalar(1), sums[i].momentum);
   }
-  const Scalar share = Scalar(1) / sums[0].mass;
-  centre = entrywise(sums[0].moment, [&](Eigen::Index k) { return share * sums[0].moment.coeff(k); });
-  velocity = entrywise(sums[0].momentum, [&](Eigen::Index k) { return share * sums[0].momentum.coeff(k); });
+  const Scalar inverse_mass = Scalar(1) / sums[0].mass;
+  centre = entrywise(sums[0].moment, [&](Eigen::Index k) { return inverse_mass * sums[0].moment.coeff(k); });
+  velocity = entrywise(sums[0].momentum, [&](Eigen::Index k) { return inverse_mass * sums[0].momentum.coeff(k); });
   Matrix<3, Joints, Scalar> columns;
   Matrix<3, Joints, Scalar> column_rates;
   columns.resize(3, robot.joints());
@@ -79,12 +79,12 @@ void center_of_mass(const Robot<N, Scalar, Joints>& robot, const RobotState<N, S
     const Vector3 zd = cross(robot.angular_velocity(state, link), z);
     Vector3 column_of_joint = z;
     Vector3 column_rate = zd;
-    Scalar factor = share * mass;
+    Scalar factor = inverse_mass * mass;
     if (robot.turns(link - 1)) {
       const Vector3 lever = plus(moment, -mass, state.p[i]);
       column_of_joint = cross(z, lever);
       column_rate = plus(cross(zd, lever), Scalar(1), cross(z, plus(momentum, -mass, v)));
-      factor = share;
+      factor = inverse_mass;
     }
     for (int k = 0; k < 3; ++k) {
       columns.coeffRef(k, link - 1) = factor * column_of_joint.coeff(k);

@@ -33,16 +33,16 @@ void require_stable_gains(const NamedGains<Scalar>& gains, const TickOfGains<Sca
   const auto& [name1, k1, name2, k2] = gains;
   const Scalar h = tick.dt;
   const Scalar integral = tick.integral_gain;
-  // The gains share · k₁ and share² · k₂ (velocity level: share · k) scale the time of the error dynamics: the error
-  // decays more slowly by the factor `share`.
-  const auto stable = [&](Scalar share, Scalar ki) {
+  // The gains factor · k₁ and factor² · k₂ (velocity level: factor · k) scale the time of the error dynamics: the error
+  // decays more slowly by this factor.
+  const auto stable = [&](Scalar factor, Scalar ki) {
     if constexpr (kLevel == Level::kVelocity) {
-      const Scalar x1 = share * gains.k2 * h;
+      const Scalar x1 = factor * gains.k2 * h;
       const Scalar x3 = ki * h * h;
       return is_stable_velocity(x1, x3) && (!tick.continues || is_stable_velocity_of_middle(x1, x3));
     } else {
-      const Scalar x1 = share * gains.k1 * h;
-      const Scalar x2 = share * share * gains.k2 * h * h;
+      const Scalar x1 = factor * gains.k1 * h;
+      const Scalar x2 = factor * factor * gains.k2 * h * h;
       const Scalar x3 = ki * h * h * h;
       if (!is_stable_acceleration(x1, x2, x3)) return false;
       if (!tick.continues) return true;
@@ -50,21 +50,21 @@ void require_stable_gains(const NamedGains<Scalar>& gains, const TickOfGains<Sca
     }
   };
   if (!stable(Scalar(1), Scalar(0))) {
-    const Scalar share = largest_share<Scalar>([&](Scalar s) { return stable(s, Scalar(0)); });
-    const Scalar square = kLevel == Level::kVelocity ? share : share * share;
+    const Scalar factor = largest_factor<Scalar>([&](Scalar s) { return stable(s, Scalar(0)); });
+    const Scalar square = kLevel == Level::kVelocity ? factor : factor * factor;
     if (!(k1 > Scalar(0))) {
       validation::fail(name2, k2, "at most ", square * k2, " at a tick of ", h,
                        " s: lower the gain, or shorten the tick");
     }
     if (!(k2 > Scalar(0))) {
-      validation::fail(name1, k1, "at most ", share * k1, " at a tick of ", h,
+      validation::fail(name1, k1, "at most ", factor * k1, " at a tick of ", h,
                        " s: lower the gain, or shorten the tick");
     }
-    validation::fail(name1, k1, "at most ", share * k1, " with ", name2, " = ", square * k2, " at a tick of ", h,
+    validation::fail(name1, k1, "at most ", factor * k1, " with ", name2, " = ", square * k2, " at a tick of ", h,
                      " s: lower both gains, or shorten the tick");
   }
   if (integral != Scalar(0) && !stable(Scalar(1), integral)) {
-    const Scalar most = integral * largest_share<Scalar>([&](Scalar s) { return stable(Scalar(1), s * integral); });
+    const Scalar most = integral * largest_factor<Scalar>([&](Scalar s) { return stable(Scalar(1), s * integral); });
     validation::fail("integral_gain", integral, "at most ", most, " with the scheme's feedback gains at a tick of ", h,
                      " s: lower the gain, or raise ", kLevel == Level::kVelocity ? name2 : name1);
   }

@@ -24,9 +24,9 @@ struct Tick<StackSpace<Levels...>, N, Scalar> : TickOfRows<StackSpace<Levels...>
 };
 
 template <typename... Levels, int N, typename Scalar>
-void multiply_scale(Tick<StackSpace<Levels...>, N, Scalar>& tick, Scalar share) noexcept {
-  tick.scale *= share;
-  for (Scalar& scale : tick.scales) scale *= share;
+void multiply_scale(Tick<StackSpace<Levels...>, N, Scalar>& tick, Scalar factor) noexcept {
+  tick.scale *= factor;
+  for (Scalar& scale : tick.scales) scale *= factor;
 }
 template <typename... Levels, int N, typename Scalar, typename Motion>
 void take_scale(Tick<StackSpace<Levels...>, N, Scalar>& tick, const Motion& motion) noexcept {

@@ -30,8 +30,8 @@ struct Tick : TickOfRows<Space::kRows, N, Scalar> {};
 
 /// Multiplies the scale of a tick by a fraction. take_scale() sets the scale to the scale of a motion.
 template <typename Space, int N, typename Scalar>
-void multiply_scale(Tick<Space, N, Scalar>& tick, Scalar share) noexcept {
-  tick.scale *= share;
+void multiply_scale(Tick<Space, N, Scalar>& tick, Scalar factor) noexcept {
+  tick.scale *= factor;
 }
 template <typename Space, int N, typename Scalar, typename Motion>
 void take_scale(Tick<Space, N, Scalar>& tick, const Motion& motion) noexcept {

@@ -156,7 +156,7 @@ struct ByLevels {
           const bool in_tick = TickFeedback<Scalar>::kByPositions && kinematics.tick > Scalar(0);
           put(to_b, [&](Eigen::Index j) {
             const Scalar error_rate = in_tick ? kinematics.error_rate.coeff(row + j) : xd.coeff(j) - task.xd.coeff(j);
-            return (Scalar(1) - feedback.share) * xdd.coeff(j) + feedback.velocity_gain * error_rate +
+            return (Scalar(1) - feedback.previous_weight) * xdd.coeff(j) + feedback.velocity_gain * error_rate +
                    feedback.position_gain * error.coeff(j);
           });
         } else {

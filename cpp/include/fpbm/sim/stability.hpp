@@ -67,7 +67,7 @@ template <typename Scalar>
 template <typename Scalar>
 [[nodiscard]] bool is_stable_acceleration_of_levels(Scalar x1, Scalar x2, Scalar x3 = Scalar(0)) noexcept {
   const TickFeedback<Scalar> feedback(x1, x2, Scalar(1));
-  const Scalar integral = (Scalar(1) - feedback.share) * x3;
+  const Scalar integral = (Scalar(1) - feedback.previous_weight) * x3;
   return is_in_unit_circle(feedback.velocity_gain + feedback.position_gain,
                            feedback.position_gain + integral / Scalar(2), integral);
 }
@@ -87,10 +87,10 @@ template <typename Scalar>
   return is_in_unit_circle(Scalar(1) + Scalar(1.5) * x1, x1 + x3, x3);
 }
 
-/// Largest share in [0, 1] for which holds(share) is true, rounded down to four digits. holds() must be true for all
-/// smaller shares.
+/// Largest factor in [0, 1] for which holds(factor) is true, rounded down to four digits. holds() must be true for all
+/// smaller factors.
 template <typename Scalar, typename Holds>
-[[nodiscard]] Scalar largest_share(const Holds& holds) {
+[[nodiscard]] Scalar largest_factor(const Holds& holds) {
   constexpr Scalar kNarrow = Scalar(1.00001);  // high/low at the end, for four digits.
   constexpr Scalar kDivisor = Scalar(1024);
   // At most 108 steps divide 1 by kDivisor until the result is 0, and 20 steps of bisection reduce high/low from

@@ -30,11 +30,11 @@ struct LostDirections {
       // uᵀGu has a smaller round-off error than the eigenvalue from QL steps.
       const Scalar gap = Scalar(1) - quadratic_form(gram, u) / epsilon_squared;
       if (!(gap > Scalar(0))) continue;
-      const Scalar share = gap < Scalar(1) ? gap * gap * gap : Scalar(1);
+      const Scalar weight = gap < Scalar(1) ? gap * gap * gap : Scalar(1);
       for (Eigen::Index j = 0; j < gram.rows(); ++j) {
-        subtract_multiple(delta.data() + j * gram.rows(), -share * epsilon_squared * u(j), u.data(), gram.rows());
+        subtract_multiple(delta.data() + j * gram.rows(), -weight * epsilon_squared * u(j), u.data(), gram.rows());
       }
-      count += share;
+      count += weight;
     }
   }
 

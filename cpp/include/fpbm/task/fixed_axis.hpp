@@ -38,13 +38,13 @@ template <typename Scalar>
   const Scalar direction = kDirection * (Scalar(1) + angle) / angle;
   const Vector<3, Scalar>& moving = w(k) != Scalar(0) ? w : wd(k) != Scalar(0) ? wd : left;
   for (int i = 0; i < 3; ++i) {
-    const Scalar share = left(i) / left(k);
+    const Scalar ratio = left(i) / left(k);
     const Scalar along = moving(i) / moving(k);
-    const Scalar away = share - along;
+    const Scalar away = ratio - along;
     if (!(std::abs(away) <= direction && std::abs(along) <= Scalar(1) + kParallel)) return {};
     if (!(std::abs(w(i) - along * w(k)) <= kParallel * std::abs(w(k)))) return {};
     if (!(std::abs(wd(i) - along * wd(k)) <= kParallel * std::abs(wd(k)))) return {};
-    axis.angles(i) = share;
+    axis.angles(i) = ratio;
     // The round-off errors of the angles would accumulate without a correction of the same magnitude.
     const Scalar corrected = along + std::clamp(away, -kCorrection, kCorrection);
     axis.motion(i) = std::clamp(corrected, Scalar(-1), Scalar(1));

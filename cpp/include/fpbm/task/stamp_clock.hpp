@@ -29,7 +29,7 @@ class StampClock {
   StampClock(Scalar dt, Scalar timeout, std::optional<double> start) noexcept
       : dt_(dt),
         timeout_(timeout),
-        share_(std::min(dt / timeout, Scalar(1))),
+        fraction_(std::min(dt / timeout, Scalar(1))),
         slow_(start ? Scalar(0) : kSlow),
         learns_(!start),
         newest_(start.value_or(0.0)) {}
@@ -145,7 +145,7 @@ class StampClock {
   /// that the clock has at least half of its rate. Limits of 0.1 to 5 ticks pass TargetStream*.
   [[nodiscard]] Scalar correction() const noexcept {
     const Scalar least = std::min(least_, least_before_);
-    return least == kNone ? Scalar(0) : std::min(share_ * least, dt_ / Scalar(2));
+    return least == kNone ? Scalar(0) : std::min(fraction_ * least, dt_ / Scalar(2));
   }
 
   /// Shifts the stored delays, which are relative to the estimated clock.
@@ -156,7 +156,7 @@ class StampClock {
 
   Scalar dt_;
   Scalar timeout_;
-  Scalar share_;  ///< Fraction of a correction that a tick makes.
+  Scalar fraction_;  ///< Fraction of a correction that a tick makes.
   Scalar slow_;
   bool learns_;
   bool known_ = false;  ///< Whether a stamp was accepted.

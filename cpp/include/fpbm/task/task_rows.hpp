@@ -48,9 +48,9 @@ struct LevelRows {
     for (Eigen::Index j = 0; j < J.cols(); ++j) {
       Scalar* const columns = &J.coeffRef(first, j);
       const Scalar* const rates = &Jd.coeffRef(first, j);
-      const Scalar qd = (Scalar(1) - feedback.share) * before.qd.coeff(j) - feedback.lead * before.qdd.coeff(j) +
-                        feedback.correction * before.change.coeff(j);
-      subtract_multiple(drift.data() + first, feedback.share * before.qdd.coeff(j), columns, rows);
+      const Scalar qd = (Scalar(1) - feedback.previous_weight) * before.qd.coeff(j) -
+                        feedback.lead * before.qdd.coeff(j) + feedback.correction * before.change.coeff(j);
+      subtract_multiple(drift.data() + first, feedback.previous_weight * before.qdd.coeff(j), columns, rows);
       subtract_multiple(drift.data() + first, -qd, rates, rows);
       subtract_multiple(columns, -feedback.lead, rates, rows);
     }
@@ -75,7 +75,7 @@ struct PostureRows {
   void continue_tick(const TickFeedback<Scalar>& feedback, int, Eigen::Index,
                      const TickBefore<N, Scalar>& before) noexcept {
     for (int i = 0; i < N; ++i) {
-      drift.coeffRef(i) = -feedback.share * before.qdd.coeff(joints[static_cast<std::size_t>(i)]);
+      drift.coeffRef(i) = -feedback.previous_weight * before.qdd.coeff(joints[static_cast<std::size_t>(i)]);
     }
   }
 };

@@ -23,10 +23,10 @@ template <typename Scalar = double>
 struct TickFeedback {
   static constexpr bool kByPositions = std::numeric_limits<Scalar>::digits > 24;  ///< Whether e' − e is used.
 
-  Scalar velocity_gain;           ///< k₁'/(1 + g) [1/s].
-  Scalar position_gain;           ///< k₂'/(1 + g) [1/s²].
-  Scalar share = Scalar(0);       ///< s.
-  Scalar lead = Scalar(0);        ///< h' = h (5/8 + g/2)/(1 + g) [s], for the rows J + h'J̇.
+  Scalar velocity_gain;                ///< k₁'/(1 + g) [1/s].
+  Scalar position_gain;                ///< k₂'/(1 + g) [1/s²].
+  Scalar previous_weight = Scalar(0);  ///< s.
+  Scalar lead = Scalar(0);             ///< h' = h (5/8 + g/2)/(1 + g) [s], for the rows J + h'J̇.
   Scalar correction = Scalar(0);  ///< h/(8 + 8g) [s], factor of the change of acceleration δ' of the previous tick.
 
   TickFeedback() noexcept {}  // NOLINT(modernize-use-equals-default): as LevelRows.
@@ -39,8 +39,8 @@ struct TickFeedback {
     const Scalar inverse = Scalar(1) / (Scalar(1) + Scalar(2) * half_g);
     velocity_gain = corrected1 * inverse;
     position_gain = corrected2 * inverse;
-    share = half_g * inverse;
-    if constexpr (!kByPositions) share += velocity_gain * h / Scalar(4);
+    previous_weight = half_g * inverse;
+    if constexpr (!kByPositions) previous_weight += velocity_gain * h / Scalar(4);
     lead = h * (Scalar(0.625) + half_g) * inverse;
     correction = h / Scalar(8) * inverse;
   }

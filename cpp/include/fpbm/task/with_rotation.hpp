@@ -44,13 +44,13 @@ class WithRotation {
   }
 
  private:
-  /// Linear rows, and the rotation vector times `share`.
+  /// Linear rows, and the rotation vector times `fraction`.
   [[nodiscard]] Vector<Space::kRows, Scalar> join(const Vector<Positions::kRows, Scalar>& linear,
-                                                  Scalar share) const noexcept {
+                                                  Scalar fraction) const noexcept {
     constexpr int kLinear = Positions::kRows;
     Vector<Space::kRows, Scalar> result;
     for (int i = 0; i < kLinear; ++i) result.coeffRef(i) = linear.coeff(i);
-    for (int i = kLinear; i < Space::kRows; ++i) result.coeffRef(i) = rotation_.coeff(i - kLinear) * share;
+    for (int i = kLinear; i < Space::kRows; ++i) result.coeffRef(i) = rotation_.coeff(i - kLinear) * fraction;
     return result;
   }
 
