@@ -163,7 +163,7 @@ def missing(results: dict[str, Any]) -> list[str]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", type=Path, help="with the programs, as built")
+    parser.add_argument("folder", type=Path, help="folder of the built programs")
     parser.add_argument("--quick", action="store_true", help="needs one or two minutes, and is less accurate")
     options = parser.parse_args()
 

@@ -54,7 +54,7 @@ for column, (name, done) in enumerate(runs.items()):
     below = figure.add_subplot(cells[1, column])
     below.plot(done.t, done.positions[:, 1], "#000000", label="hand, along the bench")
     below.plot(done.t, done.q[:, 0], "#0072B2", label="rail")
-    below.plot(done.t, done.positions[:, 1] - done.q[:, 0], "#D55E00", label="hand from the rail: the arm's part")
+    below.plot(done.t, done.positions[:, 1] - done.q[:, 0], "#D55E00", label="hand relative to the rail")
     below.set(xlabel="time [s]", ylabel="y [m]", ylim=(-1.1, 1.3))
     below.grid(color="0.9")
     below.legend(loc="upper left", frameon=False)

@@ -61,7 +61,7 @@ template <Level kLevel, typename Scalar>
   return next;
 }
 
-/// Position of the turning point in a tick of constant acceleration. If there is none, the position at the end.
+/// Position of the turning point in a tick of constant acceleration. Without a turning point, the position at the end.
 template <typename Scalar>
 [[nodiscard]] Scalar turning_point(const State<1, Scalar>& from, const State<1, Scalar>& to, Scalar tick) {
   const Scalar before = from.qd(0);
@@ -140,7 +140,7 @@ TEST(LimitsOfAnySize, allow_more_with_a_higher_acceleration_bound) {
   expect_more_to_allow_more<Level::kVelocity, float>();
 }
 
-/// An arm whose joints have position bounds only moves and keeps these bounds. An unreachable target presses the arm
+/// An arm moves and keeps its bounds if the joints have only bounds on position. An unreachable target presses the arm
 /// against its bounds.
 template <typename Scalar, typename Scheme>
 void expect_arm_to_keep_positions(const Scheme& scheme, Scalar velocity, Scalar acceleration) {

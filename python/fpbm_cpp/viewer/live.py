@@ -36,14 +36,14 @@ class LiveReadout:
     def __init__(self, gui: GuiApi) -> None:
         self._status = gui.add_html("")
         self._table = gui.add_html("")
-        self._refused = ""
+        self._rejected = ""
 
     def refuse(self, reason: str) -> None:
         """Show why the requested scheme is rejected, until another scheme is accepted."""
-        self._refused = f"rejected: {reason}" if reason else ""
+        self._rejected = f"rejected: {reason}" if reason else ""
 
     def show(self, loop: ServoLoop) -> None:
-        self._status.content = sentence(*((self._refused, BAD) if self._refused else _words(loop)))
+        self._status.content = sentence(*((self._rejected, BAD) if self._rejected else _words(loop)))
         self._table.content = table(_rows(loop))
 
 

@@ -177,7 +177,7 @@ void TargetController::take_targets() noexcept {
     const std::optional<Target> target = topics_->exchange().tasks[k].target.try_get();
     if (!target || target->count == seen_[k]) continue;
     seen_[k] = target->count;
-    if (!motion_->push(k, *target)) ++report_.tasks[k].refused;
+    if (!motion_->push(k, *target)) ++report_.tasks[k].rejected;
   }
 }
 

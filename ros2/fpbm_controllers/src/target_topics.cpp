@@ -39,11 +39,11 @@ void log_events(const Report& report, Exchange& exchange, const rclcpp::Logger& 
     RCLCPP_ERROR(logger, "%s", message_of(report, exchange.joints).c_str());
   }
   for (std::size_t k = 0; k < exchange.names.size(); ++k) {
-    const std::uint64_t refused = report.tasks[k].refused;
-    if (refused <= before.tasks[k].refused) continue;
+    const std::uint64_t rejected = report.tasks[k].rejected;
+    if (rejected <= before.tasks[k].rejected) continue;
     RCLCPP_WARN(logger,
                 "%s targets%s rejected: their stamps are not newer than earlier stamps. Check the sender's clock.",
-                std::to_string(refused - before.tasks[k].refused).c_str(), of_task(exchange.names[k]).c_str());
+                std::to_string(rejected - before.tasks[k].rejected).c_str(), of_task(exchange.names[k]).c_str());
   }
   if (report.missed > before.missed) {
     RCLCPP_WARN(logger, "%s ticks with an interface that another thread had locked",

@@ -20,7 +20,7 @@ struct TaskReport {
   double scale = 1.0;              ///< Task scale.
   double position_error = 0.0;     ///< Position error relative to the filter's reference [m].
   double orientation_error = 0.0;  ///< Orientation error [rad].
-  std::uint64_t refused = 0;       ///< Rejected targets: their stamps were not newer than earlier stamps.
+  std::uint64_t rejected = 0;       ///< Rejected targets: their stamps were not newer than earlier stamps.
   fpbm::Transform<> at;            ///< Frame of the task, in the base frame or the reference frame.
 };
 
@@ -76,7 +76,7 @@ struct Report {
       message.message = "interfaces are locked by another thread: the arm waits";
     }
     for (std::size_t k = tasks.size(); well && k-- > 0;) {
-      if (report.tasks[k].refused <= before.tasks[k].refused) continue;
+      if (report.tasks[k].rejected <= before.tasks[k].rejected) continue;
       message.level = Message::WARN;
       message.message = "targets" + of_task(tasks[k]) +
                         " are rejected: their stamps are not newer than earlier stamps. Check the sender's clock.";
@@ -99,7 +99,7 @@ struct Report {
   });
   add("following error [rad]", std::to_string(report.following_error));
   for_each_task([&](const std::string& task, const TaskReport& values) {
-    add(task + "targets rejected", std::to_string(values.refused));
+    add(task + "targets rejected", std::to_string(values.rejected));
   });
   add("ticks with a locked interface", std::to_string(report.missed));
   add("calls that came too soon", std::to_string(report.early));
