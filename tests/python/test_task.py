@@ -152,7 +152,7 @@ def test_repr_has_the_arguments():
         (lambda: fp.Waypoints([[0, 0], [1, 1]], times=[0, 0]), r"times\[1\] = 0: must be finite and later"),
         (lambda: fp.Waypoints([[0, 0], [1, 1]], times=[1]), "times has 1 entries: must have 2, one per point"),
         (lambda: fp.Waypoints([[0, 0], [1, 1]], velocity=0), "velocity = 0: must be positive"),
-        (lambda: fp.Waypoints([[0, 0], [1, 1]], angular_velocity=1.0), "bounds: at least one must limit the tip"),
+        (lambda: fp.Waypoints([[0, 0], [1, 1]], angular_velocity=1.0), "bounds: at least one bound must limit the tip"),
         (lambda: fp.Waypoints(np.zeros((2, 4, 4)), duration=1), r"points\[0\]: must be a homogeneous matrix"),
     ],
 )

@@ -60,7 +60,7 @@ class Waypoints {
       return unit.sample(t);
     });
     if (!(duration > Scalar(0))) {
-      validation::reject("bounds", ": at least one must limit the tip: give a bound on velocity or acceleration");
+      validation::reject("bounds", ": at least one bound must limit the tip: give a bound on velocity or acceleration");
     }
     return lasting(points, std::ceil(Scalar(100.5) * duration) / Scalar(100));
   }

@@ -20,7 +20,7 @@ struct TaskReport {
   double scale = 1.0;              ///< Task scale.
   double position_error = 0.0;     ///< Position error relative to the filter's reference [m].
   double orientation_error = 0.0;  ///< Orientation error [rad].
-  std::uint64_t rejected = 0;       ///< Rejected targets: their stamps were not newer than earlier stamps.
+  std::uint64_t rejected = 0;      ///< Rejected targets: their stamps were not newer than earlier stamps.
   fpbm::Transform<> at;            ///< Frame of the task, in the base frame or the reference frame.
 };
 
