@@ -374,7 +374,8 @@ ParameterError
 
 Each value is a point x, (x, xd) or (x, xd, xdd), and for positions and poses also a PathFollower or a TargetFilter. x
 has shape (3,) for a position, (3, 3) for an orientation, (4, 4) for a pose, (3,) for an axis, (joints,) for a posture
-[m, rad]. A task that is not in the dictionary keeps its last target, at rest; the first target is the start of the task.)")
+[m, rad]. A task that is not in the dictionary keeps its last target, at rest; the first target is the start of the
+task.)")
       .def("tick", py::overload_cast<const ArrayLike&, const OptionalArray&, const OptionalArray&>(&PyTracker::tick),
            py::arg("x"), py::arg("xd") = none, py::arg("xdd") = none,
            R"(One tick toward a reference, at rest unless its velocity and acceleration are given.

@@ -769,7 +769,8 @@ class Tracker:
 
         Each value is a point x, (x, xd) or (x, xd, xdd), and for positions and poses also a PathFollower or a TargetFilter. x
         has shape (3,) for a position, (3, 3) for an orientation, (4, 4) for a pose, (3,) for an axis, (joints,) for a posture
-        [m, rad]. A task that is not in the dictionary keeps its last target, at rest; the first target is the start of the task.
+        [m, rad]. A task that is not in the dictionary keeps its last target, at rest; the first target is the start of the
+        task.
         """
     @typing.overload
     def tick(
