@@ -47,7 +47,7 @@ int main() {
 
   // The task determines six of the seven degrees of freedom, so all peaks are similar, and only the motion of the elbow
   // differs. With MVN and WMVN, the posture changes from circle to circle. With MAN, the elbow still moves when the tip
-  // is at rest, and the tip error grows. With FPBM, the tip error decays, and the arm comes to rest in its start
+  // is at rest, and the tip error grows. With FPBM, the tip error decays, and the arm stops in its start
   // posture.
   std::puts("        peak    peak     final   tip error      least    from first");
   std::puts("        rad/s   rad/s²   rad/s   m      rad     manip.  posture, rad");

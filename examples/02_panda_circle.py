@@ -25,7 +25,7 @@ runs = {
 
 # The task determines six of the seven degrees of freedom, so all peaks are similar, and only the motion of the elbow
 # differs. With MVN and WMVN, the posture changes from circle to circle. With MAN, the elbow still moves when the tip is
-# at rest, and the tip error grows. With FPBM, the tip error decays, and the arm comes to rest in its start posture.
+# at rest, and the tip error grows. With FPBM, the tip error decays, and the arm stops in its start posture.
 print("        peak    peak     final   tip error      least    from first")
 print("        rad/s   rad/s²   rad/s   m      rad     manip.  posture, rad")
 for name, run in runs.items():

@@ -1,4 +1,4 @@
-// The scene: light, ground, links, target, path of the tip, and a ghost of the posture in which the tip came to rest.
+// The scene: light, ground, links, target, path of the tip, and a ghost of the posture in which the tip stopped.
 
 import {
   AmbientLight,

@@ -75,7 +75,7 @@ class Session final : public Simulator {
     following_ = true;
   }
 
-  /// A target at the current time. If the arm is on its path, it first comes to rest.
+  /// A target at the current time. If the arm is on its path, it first stops.
   void push(const fpbm::Vector<3>& target) noexcept override {
     if (following_ && !leaving_) follower_.pause();
     leaving_ = following_;

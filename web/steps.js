@@ -12,7 +12,7 @@ const ALMOST = 0.1; // Speed below which joints count as at rest [°/s].
 export class Steps {
   constructor() {
     this.done = new Set();
-    this.drifted = false; // Whether joints moved without damping since the tip came to rest.
+    this.drifted = false; // Whether joints moved without damping since the tip stopped.
     this.mark();
   }
 

@@ -327,7 +327,7 @@ recovery : bool
 keep_first_level : bool
     Whether the first level of a stack, for example a grasp of two arms, has priority over speed. The lower levels leave
     the first level a reserve of the limits: 0.7 of each bound on acceleration and 0.35 of each bound on velocity. stop
-    keeps the first level: its references are held at rest, and the joints come to rest in its null space. A task that
+    keeps the first level: its references are held at rest, and the joints stop in its null space. A task that
     is farther than 0.001 characteristic lengths, or 0.001 rad, from its reference stays at its current point.
 measured_delay : int
     Largest age of the states for resolve_measured [ticks]: the time from the measurement to the start of the tick in

@@ -78,8 +78,9 @@ struct StackPlan {
       if (found != nullptr) validation::reject("task", ": several tasks follow paths: must be the name of one");
       found = &each;
     }
-    if (found == nullptr)
+    if (found == nullptr) {
       validation::reject("task", ": the stack has no task that can follow a path: add a position or a pose");
+    }
     return *found;
   }
   /// Entries of all errors, one task after another.

@@ -109,7 +109,7 @@ void both_hands(TwoArms& robot) {
 
 /// Each task has its own frame, stamps and counts.
 void refused(TwoArms& robot) {
-  robot.tick(5000);  // Both arms come to rest.
+  robot.tick(5000);  // Both arms stop.
   Transform<> elsewhere = robot.tip("right");
   elsewhere.p(2) += 0.1;
   const auto before = robot.command;

@@ -105,7 +105,7 @@ TEST(Jerk, one_joint_keeps_all_bounds_for_any_desired_motion) {
   expect_one_joint_to_keep_its_bounds<Level::kVelocity>();
 }
 
-/// A joint that is always pushed toward its end comes to rest there. After braking starts, the velocity of the joint
+/// A joint that is always pushed toward its end stops there. After braking starts, the velocity of the joint
 /// decreases monotonically.
 template <Level kLevel, typename Scalar>
 void expect_to_rest_at_the_end() {

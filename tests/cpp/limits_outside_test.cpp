@@ -8,14 +8,14 @@
 #include "support/compiled_tracker.hpp"
 
 /// If a measured state is beyond a bound, the joint returns as fast as its bounds on velocity and acceleration admit,
-/// and comes to rest on the bound or continues inside. The other joints continue the task.
+/// and stops on the bound or continues inside. The other joints continue the task.
 namespace fpbm::test::limits_outside_laws {
 namespace {
 
 constexpr double kTick = 1e-3;
 
 /// Shortest time in which a joint returns to its bound from a distance y beyond, with a velocity `away` from the bound.
-/// The joint stops, accelerates toward the bound, cruises and brakes. The joint comes to rest on the bound, or passes
+/// The joint stops, accelerates toward the bound, cruises and brakes. Then the joint stops on the bound, or passes
 /// the bound if it cannot stop in time.
 [[nodiscard]] double least_time(double y, double away, double velocity, double acceleration) {
   double time = 0.0;
@@ -90,7 +90,7 @@ TEST(Outside, joints_return_as_fast_as_bounds_allow) {
   EXPECT_LE(jumps, trials(3000) / 10);
 }
 
-/// After stop(), a joint beyond its bound comes to rest like the other joints, in the shortest time if measured states
+/// After stop(), a joint beyond its bound stops like the other joints, in the shortest time if measured states
 /// are exact. The joint does not move to its bound.
 TEST(Outside, joints_stop_on_request) {
   const SerialArm<7> panda(panda_without_jerk());

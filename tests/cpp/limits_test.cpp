@@ -246,7 +246,7 @@ TEST(Limits, do_not_drive_a_joint_that_cannot_move_the_tip) {
   EXPECT_LE(fastest, 1e-3);
 }
 
-/// A joint that is driven toward its end as hard as its box admits comes to rest there. After braking starts, the
+/// A joint that is driven toward its end as hard as its box admits stops there. After braking starts, the
 /// velocity of the joint decreases monotonically: no chatter.
 TEST(Limits, bring_a_joint_to_rest_at_its_end_without_chatter) {
   auto bounds = JointLimits<1>::none(1);

@@ -14,7 +14,7 @@
 #include "support/compiled_tracker.hpp"
 #include "support/random.hpp"
 
-/// resolve_measured() for states that are several ticks old, quantised and noisy: after stop(), the arm comes to rest,
+/// resolve_measured() for states that are several ticks old, quantised and noisy: after stop(), the arm stops,
 /// and no bound is exceeded.
 namespace fpbm::test::measured_delay_laws {
 namespace {
@@ -166,7 +166,7 @@ TEST(MeasuredDelay, every_preset_stops) {
   }
 }
 
-/// The null-space motion pushes a joint against its bound, and the joint comes to rest there. Returns whether the joint
+/// The null-space motion pushes a joint against its bound, and the joint stops there. Returns whether the joint
 /// was at its bound.
 [[nodiscard]] bool rests_on_bound(const presets::Preset& preset, int kind, int age, const Sensor& sensor) {
   const AnyArm<Position<3>> arm = any_arm(preset.chain());

@@ -146,7 +146,7 @@ TEST(Recovery, brings_arms_back_at_velocity_level) {
   expect_return(Velocity{});
 }
 
-/// With unreachable targets, all arms come to rest, except one of 80 UR10e (docs/realtime.md, Unreachable targets). The
+/// With unreachable targets, all arms stop, except one of 80 UR10e (docs/realtime.md, Unreachable targets). The
 /// number of recoveries is printed.
 TEST(Recovery, leaves_arms_at_rest_while_the_target_is_unreachable) {
   for (const Subject& subject : subjects()) {

@@ -460,7 +460,7 @@ constexpr int kOpen = Eigen::Dynamic;
   return limits;
 }
 
-/// Targets that jump, conflict, and are unreachable: bounds hold, the robot comes to rest, and stops on command. In a
+/// Targets that jump, conflict, and are unreachable: bounds hold, and the robot stops by itself and on command. In a
 /// third of the motions, a joint starts on its bound.
 template <typename Tasks, typename Scheme>
 void expect_to_keep_bounds(const std::string& name, const Chain<>& chain, const Tasks& stack, const Scheme& scheme) {

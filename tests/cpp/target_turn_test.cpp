@@ -100,7 +100,7 @@ TEST(TargetTurn, from_rest_takes_the_largest_angles_time) {
   }
 }
 
-/// Ticks in which one moving angle comes to rest at a target.
+/// Ticks in which one moving angle stops at a target.
 int ticks_alone(AxisState<double> state, double target, const Case& c) {
   const TimeOptimalAxis<double> axis{c.velocity, {c.acceleration, c.jerk}};
   for (int k = 0; k < 200000; ++k) {

@@ -166,7 +166,7 @@ TEST(TaskBounds, hold_at_every_tick) {
   expect_bounds_hold<Level::kVelocity>(trials(12) + 3);
 }
 
-/// A point that moves straight toward a wall brakes with the given deceleration, and comes to rest at the wall.
+/// A point that moves straight toward a wall brakes with the given deceleration, and stops at the wall.
 template <Level kLevel>
 void expect_gentle_stop() {
   const Chain<> chain = presets::panda();

@@ -403,7 +403,7 @@ TEST(TickGains, of_several_levels_have_the_roots_of_the_gains) {
   }
 }
 
-/// With critical damping, the tip does not move, and the arm comes to rest.
+/// With critical damping, the tip does not move, and the arm stops.
 TEST(TickGains, a_stiff_rest_posture_does_not_change_the_task) {
   const Preset panda = redundant()[0];
   for (const double dt : {1e-3, 0.02}) {

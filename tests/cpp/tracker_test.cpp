@@ -12,7 +12,7 @@
 #include "support/panda_answers.hpp"
 #include "support/recording.hpp"
 
-/// A tracker follows, slows down, pauses, stops, comes to rest at the workspace boundary and returns.
+/// A tracker follows, slows down, pauses, stops on command and at the workspace boundary, and returns.
 namespace fpbm::test::tracker_laws {
 namespace {
 
@@ -257,7 +257,7 @@ TEST(Tracker, stops_on_request_and_resumes) {
   expect_to_stop(settling_velocity());
 }
 
-/// With an unreachable target, the arm passes the stretched, singular posture, comes to rest at the workspace boundary,
+/// With an unreachable target, the arm passes the stretched, singular posture, stops at the workspace boundary,
 /// and returns.
 template <typename Space, typename Scheme>
 void expect_to_come_back(const char* name, const Scheme& scheme) {

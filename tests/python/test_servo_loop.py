@@ -1,4 +1,4 @@
-"""The loop behind the handle: for every input, the arm keeps its limits, follows if possible and comes to rest."""
+"""The loop behind the handle: for every input, the arm keeps its limits, follows if possible and stops."""
 
 from __future__ import annotations
 

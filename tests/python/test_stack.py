@@ -153,7 +153,7 @@ def test_keeps_every_bound_and_stops(name, level):
 
 
 def test_a_slow_approach_does_not_keep_lower_tasks_moving():
-    """While the first level settles by its integral, a second level with an unreachable target comes to rest."""
+    """While the first level settles by its integral, a second level with an unreachable target stops."""
     arm = fp.PlanarArm([0.4, 0.3, 0.3, 0.2])
     stack = fp.Stack(
         fp.PositionTask("joint_3", rows=("x", "y"), name="elbow"),

@@ -90,7 +90,7 @@ def test_duration_exceeds_ruckig_s_by_at_most_one_tick(seed):
 
 @pytest.mark.parametrize("learnt", [False, True])
 def test_does_not_lag_behind_a_stream(learnt):
-    """Targets at 30 Hz, up to 20 ms late, one in ten lost. After the last target, the filter comes to rest."""
+    """Targets at 30 Hz, up to 20 ms late, one in ten lost. After the last target, the filter stops."""
     rng = np.random.default_rng(7)
     stamps = np.arange(0, 5, 1 / 30)
     delays = rng.uniform(0, 0.02, stamps.size)

@@ -16,7 +16,7 @@ namespace fpbm {
 /// scheme and Z an orthonormal basis of the null space of J.
 ///
 /// The ascent is also a scheme, and may be wrapped again. At acceleration level, ∇w acts like a force: with
-/// NullSpace::with_damping, the arm comes to rest at the best posture; without damping, the arm oscillates about the
+/// NullSpace::with_damping, the arm stops at the best posture; without damping, the arm oscillates about the
 /// best posture without decay.
 template <typename Scheme, typename Arm>
 struct ManipulabilityAscent {
@@ -35,7 +35,7 @@ struct ManipulabilityAscent {
   /// Throws std::invalid_argument if a parameter is for another number of joints.
   void require_dof(Eigen::Index dof) const {
     scheme.require_dof(dof);
-    validation::require_size("joint vector of ManipulabilityAscent::arm", arm.dof(), dof);
+    validation::require_size("joints of ManipulabilityAscent::arm", arm.dof(), dof);
   }
 
   /// Joint velocities [rad/s] or accelerations [rad/s²]. The motion of the tip is the motion of the wrapped scheme.

@@ -25,7 +25,7 @@ struct TickFeedback {
 
   Scalar velocity_gain;                ///< k₁'/(1 + g) [1/s].
   Scalar position_gain;                ///< k₂'/(1 + g) [1/s²].
-  Scalar previous_weight = Scalar(0);  ///< s.
+  Scalar previous_weight = Scalar(0);  ///< s, weight of ẍ'.
   Scalar lead = Scalar(0);             ///< h' = h (5/8 + g/2)/(1 + g) [s], for the rows J + h'J̇.
   Scalar correction = Scalar(0);  ///< h/(8 + 8g) [s], factor of the change of acceleration δ' of the previous tick.
 
