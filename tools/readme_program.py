@@ -11,13 +11,12 @@ README = Path(__file__).parent.parent / "README.md"
 
 
 def program(heading: str) -> str:
-    """The section's C++ blocks, including hidden blocks, in a main()."""
+    """The section's C++ block, which is a whole program."""
     section = README.read_text().partition(f"## {heading}\n")[2].partition("\n## ")[0]
-    blocks = re.findall(r"(?:<!-- invisible-code-block: cpp|```cpp)\n(.*?)(?:-->|```)", section, re.DOTALL)
-    if not blocks:
+    block = re.search(r"```cpp\n(.*?)```", section, re.DOTALL)
+    if not block:
         raise SystemExit(f"README.md has no C++ under '{heading}'")
-    body = "".join(f"  {line}\n" for line in "".join(blocks).splitlines())
-    return f"#include <fpbm/tracker.hpp>\n\nint main() {{\n{body}  return fpbm::failed(tick.status) ? 1 : 0;\n}}\n"
+    return block[1]
 
 
 if __name__ == "__main__":

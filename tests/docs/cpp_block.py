@@ -1,7 +1,8 @@
 """C++ blocks: compiled with warnings as errors; whole programs are also linked and run.
 
-A block that includes a header is a translation unit. Any other block is the body of a function. An invisible block
-before this block contains the prerequisites, at namespace scope.
+A block that includes a header is a translation unit, which compiles as it is typed, with its own headers only. Any
+other block is the body of a function; all headers are included, and an invisible block before this block contains the
+prerequisites, at namespace scope.
 """
 
 from __future__ import annotations
@@ -27,21 +28,21 @@ class Compiler:
         if block.document.text[block.region.start :].startswith("<!--"):
             block.namespace["cpp_setup"] = str(block.parsed)
             return
+        setup, code = block.namespace.pop("cpp_setup", ""), str(block.parsed)
+        if "#include" in code:
+            assert not setup, "a block that includes a header has no invisible prerequisites"
+            Path("block.cpp").write_text(code)
+            if "int main(" in code:
+                run("g++", *self.flags, "block.cpp", "-o", "block")
+                run("./block")
+            else:
+                run("g++", *self.flags, "block.cpp", "-fsyntax-only")
+            return
         if not self.header.exists():
             self.header.write_text("#include <fpbm/fpbm.hpp>\n")
             run("g++", *self.flags, "-x", "c++-header", str(self.header), "-o", f"{self.header}.gch")
-        Path("block.cpp").write_text(unit(block.namespace.pop("cpp_setup", ""), str(block.parsed)))
-        compile_block = ["g++", *self.flags, "-include", str(self.header), "block.cpp"]
-        if "int main(" not in block.parsed:
-            run(*compile_block, "-fsyntax-only")
-        else:
-            run(*compile_block, "-o", "block")
-            run("./block")
-
-
-def unit(setup: str, code: str) -> str:
-    """The translation unit of a block."""
-    return f"{setup}\n{code}\n" if "#include" in code else f"{setup}\nvoid block() {{\n{code}\n}}\n"
+        Path("block.cpp").write_text(f"{setup}\nvoid block() {{\n{code}\n}}\n")
+        run("g++", *self.flags, "-include", str(self.header), "block.cpp", "-fsyntax-only")
 
 
 def run(*command: str) -> None:

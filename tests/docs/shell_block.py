@@ -1,11 +1,14 @@
-"""Shell blocks: every command, option, extra, preset, target and file in them exists.
+"""Shell blocks: commands of this project run as they are typed; other commands name existing files, targets and options.
 
-Commands of this project are called with --help; nothing is installed, built or configured.
+The commands of a block run in one folder, beside a clone, with the robots my_arm.urdf and robot.urdf of this module.
+Nothing is installed, built or configured here: the commands of pip, CMake, make and colcon are only compared with the
+project. `fpbm-cpp servo` and `fpbm-cpp view` end as soon as they have printed the address of the page.
 """
 
 from __future__ import annotations
 
 import json
+import os
 import re
 import shlex
 import subprocess
@@ -18,9 +21,11 @@ import tomllib
 
 ROOT = Path(__file__).parents[2]
 OTHERS = {"echo", "tee", "setcap"}  # Programs of the system, which need privileges or change the system.
+EXAMPLE_ARM = ROOT / "examples" / "04_exported_arm.urdf"
 
 
 def check_shell(example: Any) -> None:
+    write_robots()
     for command in commands(str(example.parsed)):
         name, *arguments = command[1:] if command[0] == "sudo" else command
         if name in CHECKS:
@@ -44,11 +49,35 @@ def commands(block: str) -> list[list[str]]:
     return [part for part in parts if part]
 
 
+def write_robots() -> None:
+    """Writes a reader's robots into the present folder: an arm with the tip tool0, and a torso with two arms."""
+    Path("my_arm.urdf").write_text(EXAMPLE_ARM.read_text().replace('"tool"', '"tool0"'))
+    links, joints = ["torso", "head"], [joint("neck", "torso", "head", "0 0 0.5", "0 0 1")]
+    for side, y in (("left", 0.2), ("right", -0.2)):
+        parent = "torso"
+        for i, axis in enumerate(["0 0 1", "0 1 0", "1 0 0", "0 1 0", "1 0 0", "0 1 0", "1 0 0"]):
+            links.append(f"{side}_{i}")
+            joints.append(joint(f"{side}_{i}", parent, links[-1], f"0.15 {y if i == 0 else 0} 0.05", axis))
+            parent = links[-1]
+        links.append(f"{side}_tool")
+        joints.append(f'<joint name="{side}_tool" type="fixed"><parent link="{parent}"/><child link="{side}_tool"/></joint>')
+    bodies = "".join(f'<link name="{link}"/>' for link in links)
+    Path("robot.urdf").write_text(f'<robot name="torso">{bodies}{"".join(joints)}</robot>')
+
+
+def joint(name: str, parent: str, child: str, xyz: str, axis: str) -> str:
+    return (
+        f'<joint name="{name}" type="revolute"><parent link="{parent}"/><child link="{child}"/><origin xyz="{xyz}"/>'
+        f'<axis xyz="{axis}"/><limit lower="-2.8" upper="2.8" velocity="2" effort="50"/></joint>'
+    )
+
+
 def check_pip(arguments: list[str]) -> None:
     assert arguments[0] in ("install", "wheel")
     extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
     for argument in arguments[1:]:
-        ours = re.fullmatch(r"(?:\.|fpbm_cpp)\[(.+)\]", argument)
+        assert not argument.startswith("fpbm_cpp"), f"{argument}: not in an index; install from a clone: '.'"
+        ours = re.fullmatch(r"\.\[(.+)\]", argument)
         assert not ours or set(ours[1].split(",")) <= set(extras), f"{argument}: extras are {', '.join(extras)}"
 
 
@@ -82,14 +111,22 @@ def check_make(arguments: list[str]) -> None:
     assert arguments[0] in known, f"make {arguments[0]}: no such target"
 
 
-def check_fpbm(arguments: list[str]) -> None:
-    words = [word for word in arguments[:1] if not word.startswith("-")]
-    command = [sys.executable, "-m", "fpbm_cpp", *words, "--help"]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
-    assert done.returncode == 0, done.stderr
-    for argument in arguments:
-        option = argument.split("=")[0]
-        assert not option.startswith("-") or option in done.stdout, f"{option}: not an option of {' '.join(words)}"
+def run_fpbm(arguments: list[str]) -> None:
+    """Runs a command of fpbm-cpp; a command that serves a page runs until it prints the address of the page."""
+    command = [sys.executable, "-m", "fpbm_cpp", *arguments]
+    if arguments[0] not in ("servo", "view"):
+        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
+        assert done.returncode == 0, f"fpbm-cpp {' '.join(arguments)}\n{done.stdout}{done.stderr}"
+        return
+    if find_spec("viser") is None:
+        return
+    command += ["--no-browser", "--port", "0"]
+    unbuffered = {**os.environ, "PYTHONUNBUFFERED": "1"}
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=unbuffered) as child:
+        assert child.stdout is not None and child.stderr is not None
+        printed = child.stdout.readline()
+        child.terminate()
+        assert "http://" in printed, f"fpbm-cpp {' '.join(arguments)}\n{printed}{child.stderr.read()}"
 
 
 def check_colcon(arguments: list[str]) -> None:
@@ -109,7 +146,7 @@ CHECKS = {
     "python": check_python,
     "cmake": check_cmake,
     "make": check_make,
-    "fpbm-cpp": check_fpbm,
+    "fpbm-cpp": run_fpbm,
     "colcon": check_colcon,
     "ros2": check_ros2,
 }
