@@ -172,7 +172,7 @@ fuzz:
 	  -verbosity=0 -print_funcs=0 -print_final_stats=1 -artifact_prefix=build/fuzz/ build/fuzz/corpus
 
 test-python: $(VENV)/package $(VENV)/test $(VENV)/peers
-	$(BIN)/python -m pytest --numprocesses $(JOBS)
+	$(BIN)/python -m pytest -rs --numprocesses $(JOBS)
 
 # Fits capsules to the meshes of every robot, and tests whether the home posture of each robot keeps the default margin.
 homes: $(VENV)/package $(VENV)/test $(VENV)/peers
@@ -225,9 +225,10 @@ notebooks: $(VENV)/package $(VENV)/docs
 	  $(BIN)/jupytext --quiet --to ipynb --output build/notebooks/$$(basename $$page .md).ipynb $$page; done
 	$(BIN)/jupyter execute --inplace build/notebooks/*.ipynb
 
-test-docs: $(VENV)/package $(VENV)/test $(VENV)/docs
-	tools/need.sh g++ cmake $(EIGEN)
-	$(BIN)/python -m pytest tests/docs --numprocesses $(JOBS)
+# `make test-cpp` builds the program that prints most figures of the pages; without it, these figures are skipped.
+test-docs: $(VENV)/package $(VENV)/test $(VENV)/docs $(VENV)/peers
+	tools/need.sh g++ cmake git $(EIGEN)
+	$(BIN)/python -m pytest tests/docs -rs --numprocesses $(JOBS)
 
 # After the build, all benchmarks need a quarter of an hour. QUICK=1 is less accurate, and needs one or two minutes.
 bench: $(VENV)/package $(VENV)/test $(VENV)/bench

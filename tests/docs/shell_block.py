@@ -1,4 +1,4 @@
-"""Shell blocks: commands of this project run as they are typed; other commands name existing files, targets and options.
+"""Shell blocks: commands of this project run as they are typed; other commands name what exists.
 
 The commands of a block run in one folder, beside a clone, with the robots my_arm.urdf and robot.urdf of this module.
 Nothing is installed, built or configured here: the commands of pip, CMake, make and colcon are only compared with the
@@ -60,7 +60,9 @@ def write_robots() -> None:
             joints.append(joint(f"{side}_{i}", parent, links[-1], f"0.15 {y if i == 0 else 0} 0.05", axis))
             parent = links[-1]
         links.append(f"{side}_tool")
-        joints.append(f'<joint name="{side}_tool" type="fixed"><parent link="{parent}"/><child link="{side}_tool"/></joint>')
+        joints.append(
+            f'<joint name="{side}_tool" type="fixed"><parent link="{parent}"/><child link="{side}_tool"/></joint>'
+        )
     bodies = "".join(f'<link name="{link}"/>' for link in links)
     Path("robot.urdf").write_text(f'<robot name="torso">{bodies}{"".join(joints)}</robot>')
 
@@ -123,7 +125,8 @@ def run_fpbm(arguments: list[str]) -> None:
     command += ["--no-browser", "--port", "0"]
     unbuffered = {**os.environ, "PYTHONUNBUFFERED": "1"}
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=unbuffered) as child:
-        assert child.stdout is not None and child.stderr is not None
+        assert child.stdout is not None
+        assert child.stderr is not None
         printed = child.stdout.readline()
         child.terminate()
         assert "http://" in printed, f"fpbm-cpp {' '.join(arguments)}\n{printed}{child.stderr.read()}"
