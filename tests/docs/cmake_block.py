@@ -29,7 +29,7 @@ def build_project(example: Any) -> None:
 
 
 def clone(folder: Path) -> None:
-    """A clone of the present sources with a branch main, also if this folder is no clone or has changes."""
+    """A clone of the present sources with a branch main, also if this folder has changes."""
     folder.mkdir()
     listed = run("git", "-C", str(ROOT), "ls-files", "-z", "--cached", "--others", "CMakeLists.txt", "cmake", "cpp")
     for file in filter(None, listed.split("\0")):

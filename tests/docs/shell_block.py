@@ -1,4 +1,4 @@
-"""Shell blocks: commands of this project run as they are typed; other commands name what exists.
+"""Shell blocks: commands of this project run as they are typed; the names in other commands exist.
 
 The commands of a block run in one folder, beside a clone, with the robots my_arm.urdf and robot.urdf of this module.
 Nothing is installed, built or configured here: the commands of pip, CMake, make and colcon are only compared with the

@@ -32,7 +32,7 @@ def test_a_command_prints_its_figure(figure: Figure, tmp_path_factory: pytest.Te
 
 
 def output(command: str, folders: pytest.TempPathFactory, known: dict[str, str] = {}) -> str:  # noqa: B006
-    """What a command prints; each command runs once."""
+    """The output of a command; each command runs once."""
     if command not in known:
         name, *arguments = shlex.split(SETTING.sub("", command))
         if name == "python":
