@@ -127,7 +127,9 @@ def run_fpbm(arguments: list[str]) -> None:
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=unbuffered) as child:
         assert child.stdout is not None
         assert child.stderr is not None
-        printed = child.stdout.readline()
+        printed = ""
+        while "http://" not in printed and (line := child.stdout.readline()):
+            printed += line
         child.terminate()
         assert "http://" in printed, f"fpbm-cpp {' '.join(arguments)}\n{printed}{child.stderr.read()}"
 
