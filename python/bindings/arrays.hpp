@@ -20,6 +20,26 @@ using Array = py::array_t<double>;
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+/// Throws std::invalid_argument: an argument must be what `demand` says.
+[[noreturn]] inline void reject_type(const py::handle& given, const std::string& name, const char* demand) {
+  validation::reject(name, std::string(": must be ") + demand + ", got " +
+                               py::cast<std::string>(py::type::handle_of(given).attr("__name__")) + " " +
+                               py::cast<std::string>(py::repr(given)).substr(0, 60));
+}
+
+/// Throws std::invalid_argument unless an argument is an object of a class of the package.
+inline void require_class(const py::handle& given, const char* module, const char* name,
+                          const std::string& argument, const char* demand) {
+  const py::object type = py::module_::import((std::string("fpbm_cpp.") + module).c_str()).attr(name);
+  if (!py::isinstance(given, type)) reject_type(given, argument, demand);
+}
+
+/// A field of an object of the package. The class of the object may be a subclass outside the package, whose class
+/// variables and properties do not count.
+inline py::object field(const py::handle& object, const char* name) {
+  return object.attr("__dict__")[name];
+}
+
 inline bool is_candidate(const PyObject* /*object*/) {
   return true;
 }
@@ -29,6 +49,20 @@ inline bool is_candidate(const PyObject* /*object*/) {
 class ArrayLike : public py::object {
  public:
   PYBIND11_OBJECT_DEFAULT(ArrayLike, py::object, is_candidate)
+};
+
+/// An argument that must be a T. The ValueError for another object has the name of the argument, which the TypeError of
+/// pybind11 does not have.
+template <typename T>
+class Given : public py::object {
+ public:
+  PYBIND11_OBJECT_DEFAULT(Given, py::object, is_candidate)
+
+  /// demand: the requirement in words. Throws std::invalid_argument unless the argument is a T.
+  [[nodiscard]] const T& as(const char* name, const char* demand) const {
+    if (!py::isinstance<T>(*this)) reject_type(*this, name, demand);
+    return py::cast<const T&>(*this);
+  }
 };
 
 inline std::string shape_text(const py::array& array) {
@@ -159,6 +193,7 @@ typename Space::template Point<double> point(const ArrayLike& argument, const ch
 /// deceleration. Each attribute has one number per joint, not NaN.
 inline JointLimits<Eigen::Dynamic> joint_limits(const py::object& limits) {
   const auto bound = [&](const char* name) {
+    if (!py::hasattr(limits, name)) reject_type(limits, "limits", "JointLimits");
     const Vector<Eigen::Dynamic> values = joint_vector(ArrayLike(py::object(limits.attr(name))), name);
     for (Eigen::Index i = 0; i < values.size(); ++i) {
       if (std::isnan(values(i))) validation::fail(validation::element(name, i), values(i), "a number");
@@ -194,6 +229,10 @@ namespace pybind11::detail {
 template <>
 struct handle_type_name<fpbm::bindings::OutArray> {
   static constexpr auto name = const_name("numpy.typing.NDArray[numpy.float64]");
+};
+template <typename T>
+struct handle_type_name<fpbm::bindings::Given<T>> {
+  static constexpr auto name = make_caster<T>::name;
 };
 template <>
 struct handle_type_name<fpbm::bindings::ArrayLike> {

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from ._core import Scheme as CoreScheme
 from ._types import ArrayField, OptionalArrayField
-from .parameter import NOT_NEGATIVE, POSITIVE, Data, Parameter, data, parameter
+from .parameter import NOT_NEGATIVE, POSITIVE, Data, Parameter, data, library_class, parameter
 
 __all__ = ["FPBM", "MAN", "MVN", "WMVN", "Balanced", "Scheme", "WMVNAcceleration"]
 
@@ -58,6 +58,9 @@ class Scheme(Data, CoreScheme):
     )
 
     def _finish(self) -> None:
+        if library_class(type(self)) not in SCHEMES.values():
+            names = ", ".join(each.__name__ for each in SCHEMES.values())
+            raise TypeError(f"{type(self).__name__}: is not a scheme: must be derived from one of {names}")
         CoreScheme.__init__(self, self.level, {**self.fixed, **self._values()})
 
 

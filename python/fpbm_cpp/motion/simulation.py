@@ -1,6 +1,6 @@
 """A whole motion: simulated without limits, or tracked within the joint limits."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from .._core import failed, rollout
 from ..arms import Arm, JointLimits
 from ..clearance import Clearance
-from ..errors import ResolutionError, not_one_of, wrong
+from ..errors import ResolutionError, not_one_of, require, wrong
 from ..paths import Path
 from ..robots import Robot
 from ..schemes import Scheme
@@ -81,6 +81,7 @@ def simulate(
     partial : bool
         If the motion stops early, return the run before the stop instead of raising.
     """
+    require_motion(arm, path, scheme)
     options = motion_options(arm, dt, hold, qd0)
     name, kind, followed, others = task_and_paths(path, task, stack)
     law = None if stack is None else without_limits(arm, stack, name)._replace(other_paths=others)
@@ -136,8 +137,10 @@ def track(
     singular_radius, singular_brake, null_damping, clearance, bounds
         As for Tracker.
     """
+    require_motion(arm, path, scheme)
     options = motion_options(arm, dt, hold, qd0)
     name, kind, followed, others = task_and_paths(path, task, stack)
+    require("bounds", bounds, Iterable, "a sequence of TaskBounds")
     limited = LimitOptions(
         limits,
         error_bound,
@@ -157,12 +160,19 @@ def track(
     return make_run(outcome, q0, arm, path, scheme, name, {**options, **limit_arguments(limited)})
 
 
+def require_motion(arm: object, path: object, *schemes: object) -> None:
+    """Raise ParameterError unless the arguments of a motion are an arm, a path and schemes."""
+    require("arm", arm, (Arm, Robot), "an arm or a Robot")
+    require("path", path, (Path, Mapping), "a path, or a dictionary of paths by task name")
+    for scheme in schemes:
+        require("scheme", scheme, Scheme, "a scheme")
+
+
 def path_task(task: str | None, stack: Stack | None) -> tuple[str, str]:
     """Name and kind of the task that follows the path; the kind is 'position' or 'pose'."""
     if stack is None:
         return task or "position", task or "position"
-    if not isinstance(stack, Stack):
-        raise wrong("stack", stack, f" = {stack!r:.80}: must be a Stack")
+    require("stack", stack, Stack, "a Stack")
     followed = stack.follower(task)
     return followed.name, "pose" if isinstance(followed, PoseTask) else "position"
 
@@ -175,8 +185,7 @@ def task_and_paths(path: Paths, task: str | None, stack: Stack | None) -> tuple[
         raise wrong("path", path, f" = {path!r:.80}: must be one path, or paths by task names of a stack")
     for each, followed in path.items():
         path_task(each, stack)
-        if not isinstance(followed, Path):
-            raise wrong(f"path[{each!r}]", followed, f" = {followed!r:.80}: must be a path")
+        require(f"path[{each!r}]", followed, Path, "a path")
     name = next(iter(path)) if task is None else task
     if name not in path:
         raise not_one_of("task", name, path)

@@ -1,6 +1,6 @@
 """Sweeps: motions of every scheme from every start, and their key figures."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -12,13 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 from .._core import Status, check_sweep, failed, not_run
 from .._types import Array
 from ..arms import Arm, JointLimits
-from ..errors import SweepInterrupted, extra, wrong
+from ..errors import SweepInterrupted, extra, require, wrong
 from ..paths import Path
 from ..robots import Robot
 from ..schemes import Scheme
 from ..tasks import Stack
 from .run import LIMITED
-from .simulation import LimitOptions, limit_arguments, make_run, motion_options, path_task, without_limits
+from .simulation import LimitOptions, limit_arguments, make_run, motion_options, path_task, require_motion, without_limits
 from .workers import run_chunks
 
 # True for a progress bar in the terminal or in a notebook, or a function of (done, total).
@@ -159,9 +159,11 @@ def sweep(
     motions : bool
         Also keep the whole motions, in the result's motions: 8 bytes for each number in the arrays of simulate().
     """
+    require_motion(arm, path)
+    require("path", path, Path, "a path")
     if isinstance(arm, Robot):
         raise wrong("arm", arm, f" = {arm}: must be an arm; simulate() and track() accept a Robot")
-    laws = (schemes,) if isinstance(schemes, Scheme) else tuple(schemes)
+    laws = tuple(schemes) if isinstance(schemes, Iterable) else (schemes,)
     if not laws:
         raise wrong("schemes", schemes, ": must have at least one scheme")
     for i, law in enumerate(laws):
