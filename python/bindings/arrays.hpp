@@ -148,6 +148,17 @@ Vector<Size> fixed_vector(const ArrayLike& argument, const char* name) {
   return result;
 }
 
+/// A nonzero vector of any length, multiplied by a power of 2 so that its square neither overflows nor underflows.
+inline Vector<3> direction(const ArrayLike& argument, const char* name) {
+  const Vector<3> given = fixed_vector<3>(argument, name);
+  const double size = given.cwiseAbs().maxCoeff();
+  if (!(size > 0.0)) validation::reject(name, " is zero: must be a nonzero vector");
+  const int exponent = -std::ilogb(size);
+  Vector<3> scaled;
+  for (int i = 0; i < 3; ++i) scaled(i) = std::ldexp(given(i), exponent);
+  return scaled;
+}
+
 /// A matrix of exactly `rows` x `cols` finite entries.
 template <typename Result = Eigen::MatrixXd>
 Result matrix(const ArrayLike& argument, const char* name, Eigen::Index rows, Eigen::Index cols) {
@@ -192,8 +203,10 @@ typename Space::template Point<double> point(const ArrayLike& argument, const ch
 /// Limits from any object with lower, upper, velocity and acceleration, and optionally jerk, velocity_offset and
 /// deceleration. Each attribute has one number per joint, not NaN.
 inline JointLimits<Eigen::Dynamic> joint_limits(const py::object& limits) {
-  const auto bound = [&](const char* name) {
+  for (const char* name : {"lower", "upper", "velocity", "acceleration"}) {
     if (!py::hasattr(limits, name)) reject_type(limits, "limits", "JointLimits");
+  }
+  const auto bound = [&](const char* name) {
     const Vector<Eigen::Dynamic> values = joint_vector(ArrayLike(py::object(limits.attr(name))), name);
     for (Eigen::Index i = 0; i < values.size(); ++i) {
       if (std::isnan(values(i))) validation::fail(validation::element(name, i), values(i), "a number");

@@ -34,14 +34,14 @@ Clearance<kDynamic> clearance_of(const Model& model, const py::object& given) {
 }
 
 void add_bounds(Clearance<kDynamic>& clearance, const Model& model, const py::object& bounds) {
-  if (!py::isinstance<py::iterable>(bounds)) reject_type(bounds, "bounds", "a sequence of TaskBounds");
+  if (!py::isinstance<py::iterable>(bounds)) reject_type(bounds, "bounds", "TaskBounds in a sequence");
   for (const py::handle each : bounds) {
-    require_class(each, "task_bounds", "TaskBounds", "bounds", "a sequence of TaskBounds");
+    require_class(each, "task_bounds", "TaskBounds", "bounds", "TaskBounds in a sequence");
     const py::object task = field(each, "task");
     const auto name = py::cast<std::string>(field(task, "name"));
     const auto number = [&](const char* key) { return py::cast<double>(field(each, key)); };
     const auto vector = [](const py::handle& of, const char* key) {
-      return fixed_vector<3>(ArrayLike(field(of, key)), key);
+      return direction(ArrayLike(field(of, key)), key);
     };
     const LinkFrame<> frame = read_frame(task, model);
     if (py::cast<const Task&>(task).kind == TaskKind::kAxis) {

@@ -92,7 +92,7 @@ AnyFrameTask frame_task(const py::handle& given, TaskKind kind, const Model& mod
   Vector<3> axis(0.0, 0.0, 1.0);
   bool in_frame = false;
   if (kind == TaskKind::kAxis) {
-    axis = fixed_vector<3>(ArrayLike(field(given, "axis")), "axis");
+    axis = direction(ArrayLike(field(given, "axis")), "axis");
   } else {
     selected = rows_of(field(given, "rows"), model.planar);
     in_frame = attribute<std::string>(given, "axes") == "frame";
@@ -219,9 +219,7 @@ StackTarget read_target(const StackTask& task, const py::handle& given) {
       break;
     case TaskKind::kPose: target.at = transform(point, name.c_str()); break;
     case TaskKind::kAxis: {
-      const Vector<3> d = fixed_vector<3>(point, name.c_str());
-      if (!(norm(d) > 0.0)) validation::reject(name, " is zero: must be a nonzero vector");
-      target.at.R = z_to(d);
+      target.at.R = z_to(direction(point, name.c_str()));
       break;
     }
     case TaskKind::kPosture: target.q = joint_vector(point, name.c_str(), task.size); break;

@@ -50,8 +50,8 @@ def require(
     """
     if not isinstance(value, classes):
         where = name if index is None else f"{name}[{index}]"
-        given = f"the class {value.__name__}" if isinstance(value, type) else f"{type(value).__name__} {value!r:.60}"
-        raise ParameterError(name, index, value, f"{where}: must be {demand}, got {given}")
+        given = f"the class {value.__name__}" if isinstance(value, type) else type(value).__name__
+        raise ParameterError(name, index, value, f"{where} = {value!r:.80}: must be {demand}, got {given}")
 
 
 def not_one_of(name: str, value: object, choices: Iterable[str]) -> ParameterError:

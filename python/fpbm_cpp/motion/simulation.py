@@ -31,6 +31,7 @@ class LimitOptions(NamedTuple):
     null_damping: float = 2.0
     clearance: Clearance | None = None
     bounds: Sequence[TaskBounds] = ()
+    recover_start: bool = False
     stack: Stack | None = None
     task: str = ""  # Task of the stack that follows the path.
     other_paths: Mapping[str, Path] = {}  # Paths of other tasks of the stack, by name.
@@ -117,6 +118,7 @@ def track(
     null_damping: float = 2.0,
     clearance: Clearance | None = None,
     bounds: Sequence[TaskBounds] = (),
+    recover_start: bool = False,
 ) -> Run:
     """Move an arm along a path under a scheme, within its joints' limits and through singular postures.
 
@@ -134,13 +136,13 @@ def track(
         it time to arrive.
     limits, error_bound, integral_gain, integral_bound, stall_time
         As for Tracker.
-    singular_radius, singular_brake, null_damping, clearance, bounds
+    singular_radius, singular_brake, null_damping, clearance, bounds, recover_start
         As for Tracker.
     """
     require_motion(arm, path, scheme)
     options = motion_options(arm, dt, hold, qd0)
     name, kind, followed, others = task_and_paths(path, task, stack)
-    require("bounds", bounds, Iterable, "a sequence of TaskBounds")
+    require("bounds", bounds, Iterable, "TaskBounds in a sequence")
     limited = LimitOptions(
         limits,
         error_bound,
@@ -152,6 +154,7 @@ def track(
         null_damping,
         clearance,
         tuple(bounds),
+        bool(recover_start),
         stack,
         name,
         others,
