@@ -20,7 +20,7 @@ using Array = py::array_t<double>;
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Throws std::invalid_argument: an argument must be what `demand` says.
+/// Throws std::invalid_argument for an argument of a wrong type. demand: the requirement in words.
 [[noreturn]] inline void reject_type(const py::handle& given, const std::string& name, const char* demand) {
   validation::reject(name, std::string(": must be ") + demand + ", got " +
                                py::cast<std::string>(py::type::handle_of(given).attr("__name__")) + " " +
@@ -28,8 +28,8 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 }
 
 /// Throws std::invalid_argument unless an argument is an object of a class of the package.
-inline void require_class(const py::handle& given, const char* module, const char* name,
-                          const std::string& argument, const char* demand) {
+inline void require_class(const py::handle& given, const char* module, const char* name, const std::string& argument,
+                          const char* demand) {
   const py::object type = py::module_::import((std::string("fpbm_cpp.") + module).c_str()).attr(name);
   if (!py::isinstance(given, type)) reject_type(given, argument, demand);
 }

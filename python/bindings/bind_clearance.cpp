@@ -40,9 +40,7 @@ void add_bounds(Clearance<kDynamic>& clearance, const Model& model, const py::ob
     const py::object task = field(each, "task");
     const auto name = py::cast<std::string>(field(task, "name"));
     const auto number = [&](const char* key) { return py::cast<double>(field(each, key)); };
-    const auto vector = [](const py::handle& of, const char* key) {
-      return direction(ArrayLike(field(of, key)), key);
-    };
+    const auto vector = [](const py::handle& of, const char* key) { return direction(ArrayLike(field(of, key)), key); };
     const LinkFrame<> frame = read_frame(task, model);
     if (py::cast<const Task&>(task).kind == TaskKind::kAxis) {
       clearance.keep(AxisBounds<>{frame, vector(task, "axis"), vector(task, "x"), number("least_angle"),

@@ -349,19 +349,20 @@ Raises
 ParameterError
     If an argument is out of range, a limit is missing, or the start violates a limit, a bound or the clearance; with
     recover_start, the start may violate limits.)")
-      .def(py::init([](const Given<Model>& arm, const Given<Scheme>& scheme, const ArrayLike& q0, const OptionalArray& qd0,
-                       const OptionalArray& qdd0, const std::string& task, const py::object& stack, double dt,
-                       const py::object& limits, double error_bound, double gain, double bound, double stall_time,
-                       double radius, double brake, double null_damping, bool recovery, bool keep_first_level,
-                       int measured_delay, const py::object& clearance, const py::object& task_bounds,
-                       bool recover_start) {
+      .def(py::init([](const Given<Model>& arm, const Given<Scheme>& scheme, const ArrayLike& q0,
+                       const OptionalArray& qd0, const OptionalArray& qdd0, const std::string& task,
+                       const py::object& stack, double dt, const py::object& limits, double error_bound, double gain,
+                       double bound, double stall_time, double radius, double brake, double null_damping, bool recovery,
+                       bool keep_first_level, int measured_delay, const py::object& clearance,
+                       const py::object& task_bounds, bool recover_start) {
              const SingularDamping<> singular(radius, brake);
              TrackerOptions<> options{dt, error_bound, gain, bound, stall_time, singular, null_damping};
              options.recovery = recovery;
              options.keep_first_level = keep_first_level;
              options.measured_delay = measured_delay;
              options.recover_start = recover_start;
-             return PyTracker(arm.as("arm", "an arm or a Robot"), scheme.as("scheme", "a scheme"), q0, qd0, qdd0, task, stack, limits, options, clearance, task_bounds);
+             return PyTracker(arm.as("arm", "an arm or a Robot"), scheme.as("scheme", "a scheme"), q0, qd0, qdd0, task,
+                              stack, limits, options, clearance, task_bounds);
            }),
            py::arg("arm"), py::arg("scheme"), py::arg("q0"), py::kw_only(), py::arg("qd0") = none,
            py::arg("qdd0") = none, py::arg("task") = "position", py::arg("stack") = none, py::arg("dt") = 1e-3,

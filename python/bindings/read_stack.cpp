@@ -8,13 +8,11 @@ namespace fpbm::bindings {
 namespace {
 
 /// The kinds of the classes of tasks in Python.
-constexpr std::pair<const char*, TaskKind> kKinds[] = {{"position", TaskKind::kPosition},
-                                                       {"orientation", TaskKind::kOrientation},
-                                                       {"pose", TaskKind::kPose},
-                                                       {"axis", TaskKind::kAxis},
-                                                       {"relative_pose", TaskKind::kPose},
-                                                       {"center_of_mass", TaskKind::kCenterOfMass},
-                                                       {"posture", TaskKind::kPosture}};
+constexpr std::pair<const char*, TaskKind> kKinds[] = {
+    {"position", TaskKind::kPosition},  {"orientation", TaskKind::kOrientation},
+    {"pose", TaskKind::kPose},          {"axis", TaskKind::kAxis},
+    {"relative_pose", TaskKind::kPose}, {"center_of_mass", TaskKind::kCenterOfMass},
+    {"posture", TaskKind::kPosture}};
 constexpr const char* kRows[] = {"x", "y", "z", "rx", "ry", "rz"};
 /// The rows of a planar arm: x, y, rz.
 constexpr AnyFrameTask::Selection kPlane = {true, true, false, false, false, true};
@@ -87,7 +85,8 @@ AnyFrameTask::Selection rows_of(const py::handle& given, bool planar) {
 AnyFrameTask frame_task(const py::handle& given, TaskKind kind, const Model& model, const TaskGains<>& gains) {
   AnyFrameTask::Selection selected{};
   if (kind == TaskKind::kCenterOfMass) {
-    return AnyFrameTask(coordinates_of(kind), LinkFrame<>(0), gains, rows_of(field(given, "rows"), model.planar), false);
+    return AnyFrameTask(coordinates_of(kind), LinkFrame<>(0), gains, rows_of(field(given, "rows"), model.planar),
+                        false);
   }
   Vector<3> axis(0.0, 0.0, 1.0);
   bool in_frame = false;
@@ -101,8 +100,7 @@ AnyFrameTask frame_task(const py::handle& given, TaskKind kind, const Model& mod
   if (const py::object name = field(given, "reference_frame"); !name.is_none()) {
     reference = frame_of(model, py::cast<std::string>(name));
   }
-  return AnyFrameTask(coordinates_of(kind), read_frame(given, model), gains, selected, in_frame, axis,
-                      reference);
+  return AnyFrameTask(coordinates_of(kind), read_frame(given, model), gains, selected, in_frame, axis, reference);
 }
 
 /// The tasks of a level in the places of an AnyStack.

@@ -12,7 +12,7 @@ namespace fpbm::bindings {
 
 enum class TaskKind { kPosition, kOrientation, kPose, kAxis, kCenterOfMass, kPosture };
 
-/// The compiled part of a task: what the task is, whatever attributes the object in Python has.
+/// The compiled part of a task. Attributes of the object in Python do not change the kind.
 struct Task {
   TaskKind kind;
 };

@@ -59,10 +59,7 @@ class Runner {
         const Job<Space>& job = jobs[members[std::min(first + lane, last - 1)]];
         const Scheme& scheme = *job.scheme;
         const auto damped = [&](auto law) {  // With the damping of the tracker.
-          if (limit_options == nullptr) return law;
-          DefaultDamping<> damping = limit_options->options.damping(kDof, Space::kRows);
-          damping.continuous = continuous_joints(any_, limit_options->limits);
-          set_damping(law, damping);
+          if (limit_options != nullptr) set_damping(law, limit_options->options.damping(kDof, Space::kRows));
           return law;
         };
         const DiagonalWeights<kDof> weights = scheme.template diagonal_weights<kDof>(kDof);

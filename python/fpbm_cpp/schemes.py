@@ -140,8 +140,8 @@ class FPBM(AccelerationScheme):
     kind = "fpbm"
     alpha: float = parameter(like=ALPHA)
     weights: ArrayField = parameter(like=WEIGHTS)
-    k1: float = parameter("Feedback gain on velocity.", NOT_NEGATIVE, usual=10.0, unit="1/s")
-    k2: float = parameter("Feedback gain on position.", NOT_NEGATIVE, usual=25.0, unit="1/s^2")
+    k1: float = parameter("Feedback gain on velocity.", NOT_NEGATIVE, default=10.0, unit="1/s")
+    k2: float = parameter("Feedback gain on position.", NOT_NEGATIVE, default=25.0, unit="1/s^2")
 
 
 # Classes of schemes, by the kind in a table.

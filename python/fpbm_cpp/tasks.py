@@ -32,7 +32,7 @@ AXES = Parameter(
 
 @data
 class Task(Data, CoreTask):
-    """Base class of the tasks of a stack. A subclass of a task has the meaning of its parent, whatever its attributes.
+    """Base class of the tasks of a stack. A subclass of a task has the meaning of its parent.
 
     At acceleration level, the error of a task obeys e'' + k1 e' + k2 e = 0; at velocity level, e' + k e = 0.
     """

@@ -111,8 +111,8 @@ void posture_tasks_are_modulo_turns(const Posture& posture) {
       run(stack_tracker(robot, Stack(PositionTask<>{{Robot<7>::kTip}, TaskGains<>(10.0, 25.0)}, posture), acceleration,
                         kStart, options));
     } else {
-      run(stack_tracker(robot, Stack(PositionTask<>{{Robot<7>::kTip}, TaskGains<>(5.0)}, posture),
-                        MVN<7>(), kStart, options));
+      run(stack_tracker(robot, Stack(PositionTask<>{{Robot<7>::kTip}, TaskGains<>(5.0)}, posture), MVN<7>(), kStart,
+                        options));
     }
     return motion;
   };
@@ -150,14 +150,15 @@ TEST(Turns, count_for_bounded_joints) {
   EXPECT_EQ(SerialArm<8>(rail).limits().continuous, JointBits(0b11111110));  // Joint 1 is prismatic.
 }
 
-/// A turn of a drive is no motion of the robot only if all mimic joints rotate by whole turns, too.
+/// A turn of a drive leaves the posture unchanged only if all mimic joints rotate by whole turns, too.
 TEST(Turns, of_a_drive_move_its_mimic_joints) {
   const auto continuous = [](double ratio, JointType type, bool bounded) {
     Chain<> chain = presets::gen3();
-    for (auto& joint : chain.joints) joint.bounds.lower = -JointBounds<>::kNone, joint.bounds.upper = JointBounds<>::kNone;
+    for (auto& joint : chain.joints)
+      joint.bounds.lower = -JointBounds<>::kNone, joint.bounds.upper = JointBounds<>::kNone;
     chain.joints[6].mimic = {0, ratio, 0.3};
     chain.joints[6].type = type;
-    if (bounded) chain.joints[6].bounds.upper = 3.0;  // Of a revolute joint.
+    if (bounded) chain.joints[6].bounds.upper = 3.0;
     return CoupledArm<6>(chain).limits().continuous;
   };
   EXPECT_EQ(continuous(2.0, JointType::kContinuous, false), JointBits(0b111111));

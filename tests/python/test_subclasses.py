@@ -1,4 +1,4 @@
-"""The class decides what an object is: subclasses keep the meaning of their parents, other objects are refused by name."""
+"""The class decides the meaning of an object: subclasses keep it, and foreign objects are refused by name."""
 
 import pickle
 from collections.abc import Callable
@@ -14,7 +14,7 @@ POSE = np.array([[1, 0, 0, 0.4], [0, -1, 0, 0.1], [0, 0, -1, 0.5], [0, 0, 0, 1.0
 FAR = np.eye(4)
 FAR[:3, 3] = 3.0
 
-# Class variables of a subclass that must have no effect, whatever their values are.
+# Class variables of a subclass. They must have no effect.
 HOSTILE: list[dict[str, Any]] = [
     {"kind": "mine", "_kind": "mine", "name": "mine"},
     {"kind": "position", "frame": "base", "axes": "frame", "offset": FAR, "reference_frame": "base", "rows": ("y",)},
@@ -62,7 +62,7 @@ TASKS = [
 ]
 
 
-@pytest.mark.parametrize("task, target", TASKS, ids=lambda each: type(each).__name__)
+@pytest.mark.parametrize(("task", "target"), TASKS, ids=lambda each: type(each).__name__)
 def test_a_subclass_of_a_task(task: Any, target: Any, panda: fp.SerialArm) -> None:
     robot: Any = panda
     if isinstance(task, (fp.RelativePoseTask, fp.CenterOfMassTask)):
@@ -268,4 +268,7 @@ def test_foreign_parts_are_refused_by_name(panda: fp.SerialArm) -> None:
     refused(r"^joints\[0\] = .*: must be a Joint, got Foreign", lambda: fp.SerialArm([thing]))
     refused(r"^joints\[0\] = .*: must be a TreeJoint, got Joint", lambda: fp.Robot([fp.Joint()]))
     refused(r"^named_frames\[0\] = .*: must be a NamedFrame", lambda: fp.Robot([fp.TreeJoint(fp.Joint())], [thing]))
-    refused(r"^path\['tip'\] = .*: must be a path", lambda: fp.track(panda, {"tip": thing}, fp.MVN(), READY, stack=fp.Stack(fp.PositionTask(name="tip"))))
+    refused(
+        r"^path\['tip'\] = .*: must be a path",
+        lambda: fp.track(panda, {"tip": thing}, fp.MVN(), READY, stack=fp.Stack(fp.PositionTask(name="tip"))),
+    )

@@ -18,7 +18,15 @@ from ..robots import Robot
 from ..schemes import Scheme
 from ..tasks import Stack
 from .run import LIMITED
-from .simulation import LimitOptions, limit_arguments, make_run, motion_options, path_task, require_motion, without_limits
+from .simulation import (
+    LimitOptions,
+    limit_arguments,
+    make_run,
+    motion_options,
+    path_task,
+    require_motion,
+    without_limits,
+)
 from .workers import run_chunks
 
 # True for a progress bar in the terminal or in a notebook, or a function of (done, total).

@@ -117,7 +117,7 @@ class AnyArm {
 
   template <int N>
   [[nodiscard]] static JointLimits<kDof> dynamic(const JointLimits<N>& limits) {
-    return {limits.lower, limits.upper,           limits.velocity,    limits.acceleration,
+    return {limits.lower, limits.upper,           limits.velocity,     limits.acceleration,
             limits.jerk,  limits.velocity_offset, limits.deceleration, limits.continuous};
   }
 

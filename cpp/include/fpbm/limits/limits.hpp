@@ -98,12 +98,13 @@ class Limits {
       const Scalar upper = bounds_.upper(i);
       if (found == Violation::kPosition) {
         validation::fail(validation::element("q0", i), state.q(i), "within the joint's range, from ", lower, " to ",
-                         upper, std::isfinite(bounds_.deceleration(i)) ? ", where the bound on velocity is positive" : "",
+                         upper,
+                         std::isfinite(bounds_.deceleration(i)) ? ", where the bound on velocity is positive" : "",
                          degrees(state.q(i), lower, upper), kRecover);
       }
       if (found == Violation::kVelocity) {
-        validation::fail(validation::element("qd0", i), state.qd(i), "slow enough for the joint to stop within its bounds",
-                         kRecover);
+        validation::fail(validation::element("qd0", i), state.qd(i),
+                         "slow enough for the joint to stop within its bounds", kRecover);
       }
     }
   }
@@ -242,8 +243,8 @@ class Limits {
   /// which `last` is computed.
   [[nodiscard]] Scalar rounding(Eigen::Index i, const State<N, Scalar>& state, const JointVector& last) const noexcept {
     const Scalar q = std::clamp(state.q(i), bounds_.lower(i), bounds_.upper(i));
-    return round_off(i, q) / tick_ + Scalar(4) * std::numeric_limits<Scalar>::epsilon() *
-                                         (std::abs(state.qd(i)) + tick_ * std::abs(last(i)));
+    return round_off(i, q) / tick_ +
+           Scalar(4) * std::numeric_limits<Scalar>::epsilon() * (std::abs(state.qd(i)) + tick_ * std::abs(last(i)));
   }
 
   /// Remark for a position outside its range that would be within the range if it were in degrees.

@@ -73,8 +73,9 @@ struct JointLimits {
 
   template <typename Other>
   [[nodiscard]] JointLimits<N, Other> cast() const {
-    return {lower.template cast<Other>(),        upper.template cast<Other>(), velocity.template cast<Other>(),
-            acceleration.template cast<Other>(), jerk.template cast<Other>(),  velocity_offset.template cast<Other>(),
+    return {lower.template cast<Other>(),        upper.template cast<Other>(),
+            velocity.template cast<Other>(),     acceleration.template cast<Other>(),
+            jerk.template cast<Other>(),         velocity_offset.template cast<Other>(),
             deceleration.template cast<Other>(), continuous};
   }
 

@@ -18,9 +18,9 @@ namespace fpbm {
 ///
 /// The damping kₙ [1/s] stops the self-motion. The rest posture q_rest [rad] attracts the joints with the stiffness kₚ
 /// ([1/s²], or [1/s] at velocity level). Centring moves the joints away from their bounds. c ([rad/s²], or [rad/s]) is
-/// the free choice in the general solutions (3) and (5) of docs/equations.md. Differences of the positions of continuous
-/// joints are modulo 2π: a tracker, a rollout and Python set these joints. Each function with_… returns a copy with
-/// one more part, and throws std::invalid_argument if a value is out of range.
+/// the free choice in the general solutions (3) and (5) of docs/equations.md. Differences of the positions of
+/// continuous joints are modulo 2π: a tracker, a rollout and Python set these joints. Each function with_… returns a
+/// copy with one more part, and throws std::invalid_argument if a value is out of range.
 ///
 /// Repetitive motion planning (Zhang and others, Mechatronics 18, 2008) removes the drift of the joints on closed
 /// paths. With the gain λ, repetitive motion planning equals a rest posture at the start posture: at velocity level

@@ -44,8 +44,8 @@ class LimitedState {
         progress_(options, start.q, continuous),
         returning_(options.recover_start && !limits.is_viable(start, qdd0)) {}
 
-  /// Stores the start posture, if it is within the limits, with its tip as the first posture of a recovery. length: the arm's characteristic length
-  /// [m].
+  /// Stores the start posture, if it is within the limits, with its tip as the first posture of a recovery. length: the
+  /// arm's characteristic length [m].
   void begin_at(const typename Space::template Point<Scalar>& tip, Scalar length) noexcept {
     if (!returning_) progress_.begin_at(tick_.joints.q, tip, length);
   }

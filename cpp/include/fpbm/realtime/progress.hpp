@@ -16,7 +16,8 @@ class Progress {
   using Distance = TaskDistance<Space, Scalar>;
   using Result = Tick<Space, N, Scalar>;
 
-  /// q0: start posture. continuous: bits of the continuous joints. Throws std::invalid_argument if the stall time is not positive.
+  /// q0: start posture. continuous: bits of the continuous joints. Throws std::invalid_argument if the stall time is
+  /// not positive.
   Progress(const TrackerOptions<Scalar>& options, const JointVector& q0, JointBits continuous)
       : stall_(options.stall_time, options.dt),
         recovery_(q0, options.stall_time, options.dt, continuous),

@@ -54,8 +54,8 @@ class Tracker {
 
   /// Starts from a state, or at rest, within the limits of the arm or given limits. Throws std::invalid_argument if an
   /// option is out of range, the scheme does not suit the arm, its gains are too high for the tick, a limit is missing
-  /// (Limits), or the state violates a limit and options.recover_start is false. If the scheme has no damping, the tracker sets the damping of the
-  /// options.
+  /// (Limits), or the state violates a limit and options.recover_start is false. If the scheme has no damping, the
+  /// tracker sets the damping of the options.
   Tracker(const Arm& arm, Space, const Scheme& scheme, const JointState& start, const Options& options,
           const Limits<kLevel, N, Scalar>& limits)
       : Tracker(arm, Space{}, scheme, start, options, limits, filled<JointVector>(start.q.size())) {}
@@ -226,6 +226,8 @@ class Tracker {
   /// Acceleration of the last tick.
   [[nodiscard]] const JointVector& acceleration() const noexcept { return limited_.last(); }
   [[nodiscard]] const Arm& arm() const noexcept { return arm_; }
+  /// Bits of the continuous joints.
+  [[nodiscard]] JointBits continuous() const noexcept { return continuous_; }
   /// Enables or disables level k of a stack, counted from 0. The first level is always enabled. The commands stay
   /// within all bounds. If there is no lower level k, returns false without an effect.
   bool enable(int k, bool on) noexcept {

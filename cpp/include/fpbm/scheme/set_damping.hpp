@@ -18,8 +18,8 @@ struct DefaultDamping {
   JointBits continuous = 0;          ///< Continuous joints of the arm, for the null space of the scheme.
 };
 
-/// Sets the continuous joints of a scheme that has a member `null_space`, or of the scheme that a wrapper has. No effect
-/// on other schemes.
+/// Sets the continuous joints of a scheme that has a member `null_space`, or of the scheme that a wrapper has. No
+/// effect on other schemes.
 template <typename Scheme>
 auto set_continuous_joints(Scheme& scheme, JointBits joints, int)
     -> decltype(scheme.null_space.with_continuous_joints(joints), void()) {
