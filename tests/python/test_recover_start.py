@@ -61,7 +61,7 @@ def test_joints_return_under_a_stack(preset: str, dt: float, jerk: float, level:
     tracker = fp.Tracker(
         robot, laws(robot.dof)[level], q0, stack=stack, dt=dt, limits=limits, recover_start=True, stall_time=0.3
     )
-    goals = {name: tracker.tip[name] + [0.05, 0.05, -0.05] for name in frames}
+    goals = {name: tracker.tip[name] + np.array([0.05, 0.05, -0.05]) for name in frames}
     check(tracker, lambda: tracker.tick(goals), limits, dt, 4.0)
 
 
@@ -75,7 +75,7 @@ def test_joints_return_although_the_target_is_unreachable(level: str) -> None:
     q0 = np.array(PANDA)
     q0[3] = panda.limits.lower[3] - 0.3
     tracker = fp.Tracker(panda, laws(7)[level], q0, limits=slow, recover_start=True, stall_time=0.2)
-    far = tracker.tip + [3.0, 0, 0]
+    far = tracker.tip + np.array([3.0, 0, 0])
     check(tracker, lambda: tracker.tick(far), slow, 1e-3, 8.0)
 
 
@@ -88,7 +88,7 @@ def test_joints_return_with_a_clearance(level: str, jerk: float) -> None:
     table = fp.HalfSpace([0, 0, 1], -0.05, name="table")
     clearance = fp.Clearance.preset("panda", obstacles=[table], margin=0.01)
     tracker = fp.Tracker(panda, laws(7)[level], q0, limits=limits, clearance=clearance, recover_start=True)
-    goal, nearest = tracker.tip + [0, 0.2, -0.4], []
+    goal, nearest = tracker.tip + np.array([0, 0.2, -0.4]), []
 
     def tick() -> Any:
         now = tracker.tick(goal)

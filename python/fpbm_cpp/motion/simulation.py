@@ -195,6 +195,14 @@ def task_and_paths(path: Paths, task: str | None, stack: Stack | None) -> tuple[
     return *path_task(name, stack), path[name], {each: followed for each, followed in path.items() if each != name}
 
 
+def one_path(path: Paths, task: str | None, stack: Stack | None) -> tuple[Path, str | None]:
+    """The path and its task, for functions of one path. A dictionary of one path names the task."""
+    name, _, followed, others = task_and_paths(path, task, stack)
+    if others:
+        raise wrong("path", path, f" has paths of {len(path)} tasks: must be one path; simulate() and track() accept more")
+    return followed, name if isinstance(path, Mapping) else task
+
+
 def limit_arguments(options: LimitOptions) -> dict[str, Any]:
     """The options of a run, without its task and its paths, which are separate fields."""
     return {name: value for name, value in options._asdict().items() if name not in ("task", "other_paths")}

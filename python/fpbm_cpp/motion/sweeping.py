@@ -12,17 +12,18 @@ from numpy.typing import ArrayLike, NDArray
 from .._core import Status, check_sweep, failed, not_run
 from .._types import Array
 from ..arms import Arm, JointLimits
-from ..errors import SweepInterrupted, extra, require, wrong
+from ..errors import SweepInterrupted, extra, wrong
 from ..paths import Path
 from ..robots import Robot
 from ..schemes import Scheme
 from ..tasks import Stack
-from .run import LIMITED
+from .run import LIMITED, Paths
 from .simulation import (
     LimitOptions,
     limit_arguments,
     make_run,
     motion_options,
+    one_path,
     path_task,
     require_motion,
     without_limits,
@@ -115,7 +116,7 @@ class Sweep:
 
 def sweep(
     arm: Arm,
-    path: Path,
+    path: Paths,
     schemes: Scheme | Sequence[Scheme],
     q0s: ArrayLike,
     dt: float = 1e-3,
@@ -168,7 +169,7 @@ def sweep(
         Also keep the whole motions, in the result's motions: 8 bytes for each number in the arrays of simulate().
     """
     require_motion(arm, path)
-    require("path", path, Path, "a path")
+    path, task = one_path(path, task, stack)
     if isinstance(arm, Robot):
         raise wrong("arm", arm, f" = {arm}: must be an arm; simulate() and track() accept a Robot")
     laws = tuple(schemes) if isinstance(schemes, Iterable) else (schemes,)
