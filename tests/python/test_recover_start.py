@@ -27,16 +27,15 @@ def check(tracker: Any, tick: Any, limits: fp.JointLimits, dt: float, seconds: f
     q, qd, qdd = tracker.q, tracker.qd, np.zeros(len(tracker.q))
     back = np.zeros(len(q), dtype=bool)
     for _ in range(round(seconds / dt)):
-        beyond = np.maximum(q - limits.upper, limits.lower - q)
         now = tick()
-        inward = np.where(q > limits.upper, -now.qd, now.qd)
-        assert (inward[beyond > 1e-9] >= -1e-9).all()
         u = (now.qd - qd) / dt
         assert (np.abs(now.qd) <= limits.velocity * (1 + 1e-9)).all()
         assert (np.abs(u) <= limits.acceleration * (1 + 1e-9)).all()
         assert (np.abs(u - qdd) <= dt * limits.jerk * (1 + 1e-6)).all()
         q, qd, qdd = now.q, now.qd, u
         beyond = np.maximum(q - limits.upper, limits.lower - q)
+        inward = np.where(q > limits.upper, -qd, qd)
+        assert (inward[beyond > 1e-9] >= -1e-9).all()
         back |= beyond <= 1e-9
         assert (beyond[back] <= 1e-9).all()
     assert back.all()
