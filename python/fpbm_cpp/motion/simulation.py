@@ -199,7 +199,9 @@ def one_path(path: Paths, task: str | None, stack: Stack | None) -> tuple[Path, 
     """The path and its task, for functions of one path. A dictionary of one path names the task."""
     name, _, followed, others = task_and_paths(path, task, stack)
     if others:
-        raise wrong("path", path, f" has paths of {len(path)} tasks: must be one path; simulate() and track() accept more")
+        raise wrong(
+            "path", path, f" has paths of {len(path)} tasks: must be one path; simulate() and track() accept more"
+        )
     return followed, name if isinstance(path, Mapping) else task
 
 
