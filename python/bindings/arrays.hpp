@@ -20,6 +20,26 @@ using Array = py::array_t<double>;
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+/// Throws std::invalid_argument for an argument of a wrong type. demand: the requirement in words.
+[[noreturn]] inline void reject_type(const py::handle& given, const std::string& name, const char* demand) {
+  validation::reject(name, std::string(": must be ") + demand + ", got " +
+                               py::cast<std::string>(py::type::handle_of(given).attr("__name__")) + " " +
+                               py::cast<std::string>(py::repr(given)).substr(0, 60));
+}
+
+/// Throws std::invalid_argument unless an argument is an object of a class of the package.
+inline void require_class(const py::handle& given, const char* module, const char* name, const std::string& argument,
+                          const char* demand) {
+  const py::object type = py::module_::import((std::string("fpbm_cpp.") + module).c_str()).attr(name);
+  if (!py::isinstance(given, type)) reject_type(given, argument, demand);
+}
+
+/// A field of an object of the package. The class of the object may be a subclass outside the package, whose class
+/// variables and properties do not count.
+inline py::object field(const py::handle& object, const char* name) {
+  return object.attr("__dict__")[name];
+}
+
 inline bool is_candidate(const PyObject* /*object*/) {
   return true;
 }
@@ -29,6 +49,20 @@ inline bool is_candidate(const PyObject* /*object*/) {
 class ArrayLike : public py::object {
  public:
   PYBIND11_OBJECT_DEFAULT(ArrayLike, py::object, is_candidate)
+};
+
+/// An argument that must be a T. The ValueError for another object has the name of the argument, which the TypeError of
+/// pybind11 does not have.
+template <typename T>
+class Given : public py::object {
+ public:
+  PYBIND11_OBJECT_DEFAULT(Given, py::object, is_candidate)
+
+  /// demand: the requirement in words. Throws std::invalid_argument unless the argument is a T.
+  [[nodiscard]] const T& as(const char* name, const char* demand) const {
+    if (!py::isinstance<T>(*this)) reject_type(*this, name, demand);
+    return py::cast<const T&>(*this);
+  }
 };
 
 inline std::string shape_text(const py::array& array) {
@@ -114,6 +148,17 @@ Vector<Size> fixed_vector(const ArrayLike& argument, const char* name) {
   return result;
 }
 
+/// A nonzero vector of any length, multiplied by a power of 2 so that its square neither overflows nor underflows.
+inline Vector<3> direction(const ArrayLike& argument, const char* name) {
+  const Vector<3> given = fixed_vector<3>(argument, name);
+  const double size = given.cwiseAbs().maxCoeff();
+  if (!(size > 0.0)) validation::reject(name, " is zero: must be a nonzero vector");
+  const int exponent = -std::ilogb(size);
+  Vector<3> scaled;
+  for (int i = 0; i < 3; ++i) scaled(i) = std::ldexp(given(i), exponent);
+  return scaled;
+}
+
 /// A matrix of exactly `rows` x `cols` finite entries.
 template <typename Result = Eigen::MatrixXd>
 Result matrix(const ArrayLike& argument, const char* name, Eigen::Index rows, Eigen::Index cols) {
@@ -158,6 +203,9 @@ typename Space::template Point<double> point(const ArrayLike& argument, const ch
 /// Limits from any object with lower, upper, velocity and acceleration, and optionally jerk, velocity_offset and
 /// deceleration. Each attribute has one number per joint, not NaN.
 inline JointLimits<Eigen::Dynamic> joint_limits(const py::object& limits) {
+  for (const char* name : {"lower", "upper", "velocity", "acceleration"}) {
+    if (!py::hasattr(limits, name)) reject_type(limits, "limits", "JointLimits");
+  }
   const auto bound = [&](const char* name) {
     const Vector<Eigen::Dynamic> values = joint_vector(ArrayLike(py::object(limits.attr(name))), name);
     for (Eigen::Index i = 0; i < values.size(); ++i) {
@@ -194,6 +242,10 @@ namespace pybind11::detail {
 template <>
 struct handle_type_name<fpbm::bindings::OutArray> {
   static constexpr auto name = const_name("numpy.typing.NDArray[numpy.float64]");
+};
+template <typename T>
+struct handle_type_name<fpbm::bindings::Given<T>> {
+  static constexpr auto name = make_caster<T>::name;
 };
 template <>
 struct handle_type_name<fpbm::bindings::ArrayLike> {

@@ -15,44 +15,42 @@ namespace fpbm::bindings {
 
 Clearance<kDynamic> clearance_of(const Model& model, const py::object& given) {
   if (given.is_none()) return {model.tree, {}, {}, 0.0};
-  if (!py::hasattr(given, "capsules")) validation::reject("clearance", ": must be a Clearance");
-  const auto name = [](const py::handle& shape) { return py::cast<std::string>(shape.attr("name")); };
+  require_class(given, "clearance", "Clearance", "clearance", "a Clearance");
+  const auto name = [](const py::handle& shape) { return py::cast<std::string>(field(shape, "name")); };
   std::vector<LinkCapsule<>> capsules;
-  for (const py::handle each : given.attr("capsules")) {
+  for (const py::handle each : field(given, "capsules")) {
     const auto& shape = py::cast<const Shape&>(each);
     capsules.push_back({shape.link, std::get<Capsule<>>(shape.any), name(each)});
   }
   std::vector<Obstacle<>> obstacles;
-  for (const py::handle each : given.attr("obstacles")) {
+  for (const py::handle each : field(given, "obstacles")) {
     obstacles.emplace_back(name(each), py::cast<const Shape&>(each).any);
   }
   using Allowed = std::vector<Clearance<kDynamic>::Names>;
-  Clearance<kDynamic> clearance(model.tree, capsules, obstacles, py::cast<double>(given.attr("margin")),
-                                py::cast<Allowed>(given.attr("allowed")));
-  clearance.keep_away({py::cast<double>(given.attr("away_gain")), py::cast<double>(given.attr("away_range"))});
+  Clearance<kDynamic> clearance(model.tree, capsules, obstacles, py::cast<double>(field(given, "margin")),
+                                py::cast<Allowed>(field(given, "allowed")));
+  clearance.keep_away({py::cast<double>(field(given, "away_gain")), py::cast<double>(field(given, "away_range"))});
   return clearance;
 }
 
 void add_bounds(Clearance<kDynamic>& clearance, const Model& model, const py::object& bounds) {
+  if (!py::isinstance<py::iterable>(bounds)) reject_type(bounds, "bounds", "TaskBounds in a sequence");
   for (const py::handle each : bounds) {
-    if (!py::hasattr(each, "task")) validation::reject("bounds", ": must be TaskBounds");
-    const py::object task = each.attr("task");
-    const auto name = py::cast<std::string>(task.attr("name"));
-    const auto number = [&](const char* key) { return py::cast<double>(each.attr(key)); };
-    const auto vector = [](const py::handle& of, const char* key) {
-      return fixed_vector<3>(ArrayLike(py::object(of.attr(key))), key);
-    };
+    require_class(each, "task_bounds", "TaskBounds", "bounds", "TaskBounds in a sequence");
+    const py::object task = field(each, "task");
+    const auto name = py::cast<std::string>(field(task, "name"));
+    const auto number = [&](const char* key) { return py::cast<double>(field(each, key)); };
+    const auto vector = [](const py::handle& of, const char* key) { return direction(ArrayLike(field(of, key)), key); };
     const LinkFrame<> frame = read_frame(task, model);
-    if (py::cast<std::string>(task.attr("kind")) == "axis") {
-      const auto angle = [&](const char* key) { return py::cast<double>(each.attr(key)); };
-      clearance.keep(AxisBounds<>{frame, vector(task, "axis"), vector(task, "x"), angle("least_angle"),
-                                  angle("largest_angle"), number("velocity"), number("deceleration"), name});
+    if (py::cast<const Task&>(task).kind == TaskKind::kAxis) {
+      clearance.keep(AxisBounds<>{frame, vector(task, "axis"), vector(task, "x"), number("least_angle"),
+                                  number("largest_angle"), number("velocity"), number("deceleration"), name});
     } else {
-      const auto selected = py::cast<std::array<bool, 3>>(each.attr("selected"));
+      const auto selected = py::cast<std::array<bool, 3>>(field(each, "selected"));
       const auto limit = [&](const char* key) {
         Vector<3> values;
         for (std::size_t i = 0; i < 3; ++i) {
-          values(static_cast<Eigen::Index>(i)) = py::cast<double>(each.attr(key)[py::int_(i)]);
+          values(static_cast<Eigen::Index>(i)) = py::cast<double>(field(each, key)[py::int_(i)]);
         }
         return values;
       };
@@ -79,9 +77,13 @@ void move_obstacle(Clearance<kDynamic>& clearance, const std::string& name, cons
     validation::reject("name", " = '" + name + "': must be one of the obstacles: " + (names.empty() ? "none" : names));
   }
   if (shape.any.index() != found->shape.index()) {
-    constexpr std::array<const char*, 3> kKinds = {"Capsule", "HalfSpace", "Cuboid"};  // In the order of WorldShape.
-    validation::reject(
-        "shape", std::string(": must be a ") + kKinds.at(found->shape.index()) + ", like obstacle '" + name + "'");
+    struct {
+      const char* operator()(const Capsule<>&) const { return "Capsule"; }
+      const char* operator()(const HalfSpace<>&) const { return "HalfSpace"; }
+      const char* operator()(const Cuboid<>&) const { return "Cuboid"; }
+    } kind;
+    validation::reject("shape",
+                       std::string(": must be a ") + std::visit(kind, found->shape) + ", like obstacle '" + name + "'");
   }
   if (shape.link != 0) validation::fail("shape.link", shape.link, "0, the base");
   clearance.move(static_cast<std::size_t>(found - obstacles.begin()), shape.any, velocity);
@@ -94,7 +96,8 @@ class PyClearance {
  public:
   using Pairs = std::vector<Clearance<kDynamic>::Names>;
 
-  PyClearance(const Model& model, const py::object& given) : clearance_(clearance_of(model, given)) {}
+  PyClearance(const Given<Model>& model, const py::object& given)
+      : clearance_(clearance_of(model.as("arm", "an arm or a Robot"), given)) {}
 
   [[nodiscard]] std::optional<PyNearest> nearest(const ArrayLike& q) const {
     return nearest_at(clearance_, joint_vector(q, "q", static_cast<int>(clearance_.robot().dof())));
@@ -170,7 +173,7 @@ void bind_clearance(py::module_& m) {
       });
 
   py::class_<PyClearance>(m, "Clearance", "The compiled part of a clearance, for one robot.")
-      .def(py::init<const Model&, const py::object&>(), py::arg("arm"), py::arg("clearance"))
+      .def(py::init<const Given<Model>&, const py::object&>(), py::arg("arm"), py::arg("clearance"))
       .def("nearest", &PyClearance::nearest, py::arg("q"))
       .def("pairs", &PyClearance::pairs)
       .def("excluded_pairs", &PyClearance::excluded_pairs);

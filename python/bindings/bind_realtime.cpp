@@ -184,7 +184,8 @@ class PyTracker {
     });
   }
 
-  [[nodiscard]] PyFollower follow(const Path& path, double ramp, const std::optional<std::string>& task) {
+  [[nodiscard]] PyFollower follow(const Given<Path>& given, double ramp, const std::optional<std::string>& task) {
+    const Path& path = given.as("path", "a path");
     if (const auto* stacked = std::get_if<Stacked>(&any_)) return (*stacked)->follow(path, ramp, task);
     if (task) validation::reject("task", " = '" + *task + "': must not be given for a tracker with one task");
     return visit("", [&](auto& tracker, auto space) -> PyFollower {
@@ -193,7 +194,8 @@ class PyTracker {
     });
   }
 
-  void move(const std::string& name, const Shape& shape, const ArrayLike& velocity) {
+  void move(const std::string& name, const Given<Shape>& given, const ArrayLike& velocity) {
+    const Shape& shape = given.as("shape", "a HalfSpace, a Cuboid or a Capsule");
     const Vector<3> v = fixed_vector<3>(velocity, "velocity");
     visit_any([&](auto& tracker) { move_obstacle(tracker.clearance(), name, shape, v); });
   }
@@ -338,22 +340,29 @@ clearance : Clearance, optional
     brakes immediately.
 bounds : sequence of TaskBounds
     Bounds on task coordinates: walls for points of links, cones for axes, speeds.
+recover_start : bool
+    Whether the start may be outside the joints' ranges, or too fast for their bounds. The joints then return within the
+    bounds on velocity, acceleration and jerk, and the other joints follow the task.
 
 Raises
 ------
 ParameterError
-    If an argument is out of range, a limit is missing, or the start violates a limit, a bound or the clearance.)")
-      .def(py::init([](const Model& arm, const Scheme& scheme, const ArrayLike& q0, const OptionalArray& qd0,
-                       const OptionalArray& qdd0, const std::string& task, const py::object& stack, double dt,
-                       const py::object& limits, double error_bound, double gain, double bound, double stall_time,
-                       double radius, double brake, double null_damping, bool recovery, bool keep_first_level,
-                       int measured_delay, const py::object& clearance, const py::object& task_bounds) {
+    If an argument is out of range, a limit is missing, or the start violates a limit, a bound or the clearance; with
+    recover_start, the start may violate limits.)")
+      .def(py::init([](const Given<Model>& arm, const Given<Scheme>& scheme, const ArrayLike& q0,
+                       const OptionalArray& qd0, const OptionalArray& qdd0, const std::string& task,
+                       const py::object& stack, double dt, const py::object& limits, double error_bound, double gain,
+                       double bound, double stall_time, double radius, double brake, double null_damping, bool recovery,
+                       bool keep_first_level, int measured_delay, const py::object& clearance,
+                       const py::object& task_bounds, bool recover_start) {
              const SingularDamping<> singular(radius, brake);
              TrackerOptions<> options{dt, error_bound, gain, bound, stall_time, singular, null_damping};
              options.recovery = recovery;
              options.keep_first_level = keep_first_level;
              options.measured_delay = measured_delay;
-             return PyTracker(arm, scheme, q0, qd0, qdd0, task, stack, limits, options, clearance, task_bounds);
+             options.recover_start = recover_start;
+             return PyTracker(arm.as("arm", "an arm or a Robot"), scheme.as("scheme", "a scheme"), q0, qd0, qdd0, task,
+                              stack, limits, options, clearance, task_bounds);
            }),
            py::arg("arm"), py::arg("scheme"), py::arg("q0"), py::kw_only(), py::arg("qd0") = none,
            py::arg("qdd0") = none, py::arg("task") = "position", py::arg("stack") = none, py::arg("dt") = 1e-3,
@@ -364,7 +373,7 @@ ParameterError
            py::arg("null_damping") = TrackerOptions<>().null_damping, py::arg("recovery") = TrackerOptions<>().recovery,
            py::arg("keep_first_level") = TrackerOptions<>().keep_first_level,
            py::arg("measured_delay") = TrackerOptions<>().measured_delay, py::arg("clearance") = none,
-           py::arg("bounds") = py::tuple())
+           py::arg("bounds") = py::tuple(), py::arg("recover_start") = TrackerOptions<>().recover_start)
       .def("tick", py::overload_cast<PyFollower&>(&PyTracker::tick), py::arg("follower"),
            "One tick along a path. The clock of the path advances by one tick.")
       .def("tick", py::overload_cast<PyTargetFilter&>(&PyTracker::tick), py::arg("filter"),

@@ -45,6 +45,7 @@ std::optional<LimitOptions> limit_options_of(const py::object& given, const Mode
        SingularDamping<>(number("singular_radius"), number("singular_brake")), number("null_damping")},
       clearance_of(model, clearance),
       !clearance.is_none()};
+  limit_options.options.recover_start = py::cast<bool>(given.attr("recover_start"));
   add_bounds(limit_options.clearance, model, given.attr("bounds"));
   if (const py::object stack = given.attr("stack"); !stack.is_none()) {
     StackOptions options{read_stack(stack, model), {}, 0.0};

@@ -16,6 +16,7 @@ void bind_clearance(py::module_& m);
 void bind_sim(py::module_& m);
 void bind_sweep(py::module_& m);
 void bind_target_filter(py::module_& m);
+void bind_task(py::module_& m);
 void bind_realtime(py::module_& m);
 
 }  // namespace fpbm::bindings

@@ -38,5 +38,6 @@ PYBIND11_MODULE(_core, m) {
   fpbm::bindings::bind_limits(m);
   fpbm::bindings::bind_saturation(m);
   fpbm::bindings::bind_target_filter(m);
+  fpbm::bindings::bind_task(m);
   fpbm::bindings::bind_realtime(m);
 }

@@ -16,18 +16,20 @@ EitherScheme<Space> Scheme::make(const AnyArmFor<Space>& arm) const {
 }
 
 template <typename Space>
-EitherScheme<Space> Scheme::make_without_arm(Eigen::Index dof) const {
+EitherScheme<Space> Scheme::make_without_arm(Eigen::Index dof, JointBits continuous) const {
   if (needs_arm()) validation::reject("scheme", ": has objectives that need an arm: give an arm, not a Kinematics");
-  return plain<Space>(JointLimits<kDynamic>::none(dof));
+  auto limits = JointLimits<kDynamic>::none(dof);
+  limits.continuous = continuous;
+  return plain<Space>(limits);
 }
 
 template EitherScheme<Position<2>> Scheme::make(const AnyArm<Position<2>>&) const;
 template EitherScheme<PlanarPose> Scheme::make(const AnyArm<Position<2>>&) const;
 template EitherScheme<Position<3>> Scheme::make(const AnyArm<Position<3>>&) const;
 template EitherScheme<Pose> Scheme::make(const AnyArm<Position<3>>&) const;
-template EitherScheme<Position<2>> Scheme::make_without_arm(Eigen::Index) const;
-template EitherScheme<PlanarPose> Scheme::make_without_arm(Eigen::Index) const;
-template EitherScheme<Position<3>> Scheme::make_without_arm(Eigen::Index) const;
-template EitherScheme<Pose> Scheme::make_without_arm(Eigen::Index) const;
+template EitherScheme<Position<2>> Scheme::make_without_arm(Eigen::Index, JointBits) const;
+template EitherScheme<PlanarPose> Scheme::make_without_arm(Eigen::Index, JointBits) const;
+template EitherScheme<Position<3>> Scheme::make_without_arm(Eigen::Index, JointBits) const;
+template EitherScheme<Pose> Scheme::make_without_arm(Eigen::Index, JointBits) const;
 
 }  // namespace fpbm::bindings

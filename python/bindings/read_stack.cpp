@@ -7,14 +7,38 @@
 namespace fpbm::bindings {
 namespace {
 
-constexpr const char* kKinds[] = {"position", "orientation", "pose", "axis", "center_of_mass", "posture"};
+/// The kinds of the classes of tasks in Python.
+constexpr std::pair<const char*, TaskKind> kKinds[] = {
+    {"position", TaskKind::kPosition},  {"orientation", TaskKind::kOrientation},
+    {"pose", TaskKind::kPose},          {"axis", TaskKind::kAxis},
+    {"relative_pose", TaskKind::kPose}, {"center_of_mass", TaskKind::kCenterOfMass},
+    {"posture", TaskKind::kPosture}};
 constexpr const char* kRows[] = {"x", "y", "z", "rx", "ry", "rz"};
 /// The rows of a planar arm: x, y, rz.
 constexpr AnyFrameTask::Selection kPlane = {true, true, false, false, false, true};
 
 template <typename Value>
 Value attribute(const py::handle& object, const char* name) {
-  return py::cast<Value>(object.attr(name));
+  return py::cast<Value>(field(object, name));
+}
+
+Task task_of_kind(const std::string& name) {
+  for (const auto& [known, kind] : kKinds) {
+    if (name == known) return {kind};
+  }
+  validation::reject("kind", " = '" + name + "': is not a kind of task");
+}
+
+FrameCoordinates coordinates_of(TaskKind kind) {
+  switch (kind) {
+    case TaskKind::kPosition: return FrameCoordinates::kPosition;
+    case TaskKind::kOrientation: return FrameCoordinates::kOrientation;
+    case TaskKind::kPose: return FrameCoordinates::kPose;
+    case TaskKind::kAxis: return FrameCoordinates::kAxis;
+    case TaskKind::kCenterOfMass: return FrameCoordinates::kCenterOfMass;
+    case TaskKind::kPosture: break;
+  }
+  validation::reject("task", ": a posture is not a task of a frame");
 }
 
 /// A frame of a robot, at an offset.
@@ -48,7 +72,9 @@ AnyFrameTask::Selection rows_of(const py::handle& given, bool planar) {
     selected.fill(true);
   } else {
     for (const py::handle row : given) {
-      const auto which = std::find(std::begin(kRows), std::end(kRows), py::cast<std::string>(row));
+      const auto name = py::cast<std::string>(row);
+      const auto which = std::find(std::begin(kRows), std::end(kRows), name);
+      if (which == std::end(kRows)) validation::reject("rows", " has '" + name + "': must be x, y, z, rx, ry or rz");
       selected[static_cast<std::size_t>(which - std::begin(kRows))] = true;
     }
   }
@@ -59,23 +85,22 @@ AnyFrameTask::Selection rows_of(const py::handle& given, bool planar) {
 AnyFrameTask frame_task(const py::handle& given, TaskKind kind, const Model& model, const TaskGains<>& gains) {
   AnyFrameTask::Selection selected{};
   if (kind == TaskKind::kCenterOfMass) {
-    return AnyFrameTask(FrameCoordinates::kCenterOfMass, LinkFrame<>(0), gains,
-                        rows_of(given.attr("rows"), model.planar), false);
+    return AnyFrameTask(coordinates_of(kind), LinkFrame<>(0), gains, rows_of(field(given, "rows"), model.planar),
+                        false);
   }
   Vector<3> axis(0.0, 0.0, 1.0);
   bool in_frame = false;
   if (kind == TaskKind::kAxis) {
-    axis = fixed_vector<3>(ArrayLike(py::object(given.attr("axis"))), "axis");
+    axis = direction(ArrayLike(field(given, "axis")), "axis");
   } else {
-    selected = rows_of(given.attr("rows"), model.planar);
+    selected = rows_of(field(given, "rows"), model.planar);
     in_frame = attribute<std::string>(given, "axes") == "frame";
   }
   std::optional<LinkFrame<>> reference;
-  if (const py::object name = given.attr("reference_frame"); !name.is_none()) {
+  if (const py::object name = field(given, "reference_frame"); !name.is_none()) {
     reference = frame_of(model, py::cast<std::string>(name));
   }
-  return AnyFrameTask(static_cast<FrameCoordinates>(kind), read_frame(given, model), gains, selected, in_frame, axis,
-                      reference);
+  return AnyFrameTask(coordinates_of(kind), read_frame(given, model), gains, selected, in_frame, axis, reference);
 }
 
 /// The tasks of a level in the places of an AnyStack.
@@ -99,9 +124,8 @@ StackTask place(const py::handle& given, std::size_t k, const Model& model, Plac
     const std::string argument = "stack.levels[" + std::to_string(k) + "]";
     validation::reject(argument, std::string(" has more than ") + what + ": move a task to another level");
   };
-  auto name = attribute<std::string>(given, "kind");
-  if (name == "relative_pose") name = "pose";
-  const auto kind = static_cast<TaskKind>(std::find(std::begin(kKinds), std::end(kKinds), name) - std::begin(kKinds));
+  if (!py::isinstance<Task>(given)) reject_type(given, "stack.levels[" + std::to_string(k) + "]", "a task");
+  const TaskKind kind = py::cast<const Task&>(given).kind;
   StackTask task{attribute<std::string>(given, "name"), kind, 3 * static_cast<int>(k), 0, {}};
   const auto put = [&](Places& places, Level level) {
     const TaskGains<> gains = gains_of(given, level);
@@ -113,7 +137,7 @@ StackTask place(const py::handle& given, std::size_t k, const Model& model, Plac
   };
   if (kind == TaskKind::kPosture) {
     if (velocity.posture.rows() > 0) too_many("one PostureTask");
-    task.joints = joints_of(given.attr("joints"), model);
+    task.joints = joints_of(field(given, "joints"), model);
     task.index += 2;
     task.size = static_cast<int>(task.joints.size());
   } else {
@@ -128,14 +152,18 @@ StackTask place(const py::handle& given, std::size_t k, const Model& model, Plac
 
 }  // namespace
 
+void bind_task(py::module_& m) {
+  py::class_<Task>(m, "Task", "The compiled part of a task.").def(py::init(&task_of_kind), py::arg("kind"));
+}
+
 LinkFrame<> read_frame(const py::handle& task, const Model& model) {
   Transform<> offset;
-  if (!task.attr("offset").is_none()) offset = transform(ArrayLike(py::object(task.attr("offset"))), "offset");
+  if (const py::object given = field(task, "offset"); !given.is_none()) offset = transform(ArrayLike(given), "offset");
   return frame_of(model, attribute<std::string>(task, "frame"), offset);
 }
 
 StackPlan read_stack(const py::object& stack, const Model& model) {
-  if (!py::hasattr(stack, "levels")) validation::reject("stack", ": must be a Stack");
+  require_class(stack, "tasks", "Stack", "stack", "a Stack");
   constexpr std::size_t kLevels = AnyStack::kLevels;
   const auto levels = attribute<py::tuple>(stack, "levels");
   if (levels.size() > kLevels) {
@@ -148,7 +176,7 @@ StackPlan read_stack(const py::object& stack, const Model& model) {
   for (std::size_t k = 0; k < levels.size(); ++k) {
     for (const py::handle given : levels[k]) {
       const StackTask task = place(given, k, model, velocity[k], acceleration[k]);
-      const py::object target = given.attr(task.kind == TaskKind::kPosture ? "q" : "x");
+      const py::object target = field(given, task.kind == TaskKind::kPosture ? "q" : "x");
       targets.push_back(target.is_none() ? std::nullopt : std::optional(read_target(task, target)));
       tasks.push_back(task);
     }
@@ -189,9 +217,7 @@ StackTarget read_target(const StackTask& task, const py::handle& given) {
       break;
     case TaskKind::kPose: target.at = transform(point, name.c_str()); break;
     case TaskKind::kAxis: {
-      const Vector<3> d = fixed_vector<3>(point, name.c_str());
-      if (!(norm(d) > 0.0)) validation::reject(name, " is zero: must be a nonzero vector");
-      target.at.R = z_to(d);
+      target.at.R = z_to(direction(point, name.c_str()));
       break;
     }
     case TaskKind::kPosture: target.q = joint_vector(point, name.c_str(), task.size); break;

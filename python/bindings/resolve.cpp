@@ -136,7 +136,8 @@ Array resolve_for_arm(const Scheme& scheme, const Arm& arm, const ArrayLike& q, 
     any.kinematics(state.q, state.qd, kinematics);
     std::optional<EitherScheme<Space>> of_arm;
     return resolve(scheme, kinematics, state, x, xd, xdd, out, [&](auto) -> const EitherScheme<Space>& {
-      return scheme.needs_arm() ? of_arm.emplace(scheme.make<Space>(any)) : scheme.kept<Space>(arm.dof());
+      return scheme.needs_arm() ? of_arm.emplace(scheme.make<Space>(any))
+                                : scheme.kept<Space>(arm.dof(), any.limits().continuous);
     });
   });
 }

@@ -31,8 +31,9 @@ EitherScheme<Space> Scheme::plain(const JointLimits<kDynamic>& limits) const {
   const Eigen::Index dof = limits.lower.size();
   if constexpr (constexpr int N = kOwnSize<Space>; N > 0) {
     if (dof == N && !std::holds_alternative<Dense>(weights)) {
-      return with(diagonal_weights<N>(dof),
-                  JointLimits<N>{limits.lower, limits.upper, limits.velocity, limits.acceleration});
+      JointLimits<N> sized{limits.lower, limits.upper, limits.velocity, limits.acceleration};
+      sized.continuous = limits.continuous;
+      return with(diagonal_weights<N>(dof), sized);
     }
   }
   return with(any_weights(*this, dof), limits);

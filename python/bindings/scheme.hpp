@@ -42,18 +42,19 @@ struct Scheme {
   template <typename Space>
   [[nodiscard]] EitherScheme<Space> make(const AnyArmFor<Space>& arm) const;
 
-  /// The scheme for that many joints, without an arm.
+  /// The scheme for that many joints, without an arm. continuous: bits of the continuous joints.
   /// Throws std::invalid_argument as make() does, and if an objective needs an arm.
   template <typename Space>
-  [[nodiscard]] EitherScheme<Space> make_without_arm(Eigen::Index dof) const;
+  [[nodiscard]] EitherScheme<Space> make_without_arm(Eigen::Index dof, JointBits continuous) const;
 
   /// The result of make_without_arm(), made once, because the construction takes longer than a call of resolve().
   template <typename Space>
-  [[nodiscard]] const EitherScheme<Space>& kept(Eigen::Index dof) const {
-    auto& [joints, scheme] = std::get<Kept<Space>>(kept_);  // The caller holds Python's lock.
-    if (!scheme || joints != dof) {
-      scheme = std::make_shared<const EitherScheme<Space>>(make_without_arm<Space>(dof));
+  [[nodiscard]] const EitherScheme<Space>& kept(Eigen::Index dof, JointBits continuous = 0) const {
+    auto& [joints, turning, scheme] = std::get<Kept<Space>>(kept_);  // The caller holds Python's lock.
+    if (!scheme || joints != dof || turning != continuous) {
+      scheme = std::make_shared<const EitherScheme<Space>>(make_without_arm<Space>(dof, continuous));
       joints = dof;
+      turning = continuous;
     }
     return *scheme;
   }
@@ -105,12 +106,13 @@ struct Scheme {
       result = result.with_free_choice(*c);
     }
     if (joint_centring != 0.0) result = result.with_joint_centring(limits, joint_centring);
-    return result;
+    return result.with_continuous_joints(limits.continuous);
   }
 
   template <typename Space>
   struct Kept {
     Eigen::Index dof = 0;
+    JointBits continuous = 0;
     std::shared_ptr<const EitherScheme<Space>> scheme = {};
   };
   /// Results of kept().

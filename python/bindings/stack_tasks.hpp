@@ -10,8 +10,12 @@
 
 namespace fpbm::bindings {
 
-/// In the order of FrameCoordinates, then the posture.
 enum class TaskKind { kPosition, kOrientation, kPose, kAxis, kCenterOfMass, kPosture };
+
+/// The compiled part of a task. Attributes of the object in Python do not change the kind.
+struct Task {
+  TaskKind kind;
+};
 
 /// A task of a stack in Python.
 struct StackTask {

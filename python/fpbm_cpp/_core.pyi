@@ -30,6 +30,7 @@ __all__: list[str] = [
     "Stop",
     "TIME_LAWS",
     "TargetFilter",
+    "Task",
     "Tick",
     "Tracker",
     "advice",
@@ -521,6 +522,12 @@ class TargetFilter:
         Acceleration of the reference, shape (m,) [m/s^2, rad/s^2].
         """
 
+class Task:
+    """
+    The compiled part of a task.
+    """
+    def __init__(self, kind: str) -> None: ...
+
 class Tick:
     """
     Result of one tick of a control loop.
@@ -660,11 +667,15 @@ class Tracker:
         brakes immediately.
     bounds : sequence of TaskBounds
         Bounds on task coordinates: walls for points of links, cones for axes, speeds.
+    recover_start : bool
+        Whether the start may be outside the joints' ranges, or too fast for their bounds. The joints then return within the
+        bounds on velocity, acceleration and jerk, and the other joints follow the task.
 
     Raises
     ------
     ParameterError
-        If an argument is out of range, a limit is missing, or the start violates a limit, a bound or the clearance.
+        If an argument is out of range, a limit is missing, or the start violates a limit, a bound or the clearance; with
+        recover_start, the start may violate limits.
     """
     def __init__(
         self,
@@ -690,6 +701,7 @@ class Tracker:
         measured_delay: typing.SupportsInt | typing.SupportsIndex = 3,
         clearance: typing.Any = None,
         bounds: typing.Any = (),
+        recover_start: bool = False,
     ) -> None: ...
     def enable(self, level: typing.SupportsInt | typing.SupportsIndex, on: bool) -> None:
         """

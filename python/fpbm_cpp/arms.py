@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from ._core import PRESETS, dh, preset
 from ._core import Arm as CoreArm
 from ._types import ArrayField, FilledArrayField
-from .errors import ParameterError, not_one_of, wrong
+from .errors import not_one_of, require, wrong
 from .parameter import POSITIVE, Data, Parameter, data, parameter
 
 __all__ = ["Arm", "Joint", "JointLimits", "PlanarArm", "SerialArm"]
@@ -138,8 +138,7 @@ class SerialArm(Arm):
 
     def _finish(self) -> None:
         for i, joint in enumerate(self.joints):
-            if not isinstance(joint, Joint):
-                raise ParameterError("joints", i, joint, f"joints[{i}] = {joint!r:.80}: must be a Joint")
+            require("joints", joint, Joint, "a Joint", index=i)
         named = tuple(j if j.name else replace(j, name=f"joint_{i}") for i, j in enumerate(self.joints, 1))
         object.__setattr__(self, "joints", named)
         CoreArm.__init__(self, list(named), self.tip)

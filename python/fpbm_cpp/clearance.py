@@ -15,7 +15,7 @@ from ._core import Nearest, preset_capsules
 from ._types import Array
 from .arms import IDENTITY, Arm, Joint, SerialArm
 from .capsule import Capsule
-from .errors import ParameterError, suggestion, wrong
+from .errors import ParameterError, require, suggestion, wrong
 from .obstacle import OBSTACLES, Obstacle
 from .parameter import NOT_NEGATIVE, POSITIVE, Data, data, parameter
 from .robots import PLACE, Robot
@@ -251,8 +251,7 @@ def _require(name: str, shapes: Iterable[Any], kinds: tuple[Any, ...], demand: s
     if not isinstance(shapes, (list, tuple)):
         raise wrong(name, shapes, f" = {shapes!r:.60}: must be a list")
     for i, each in enumerate(shapes):
-        if not isinstance(each, kinds):
-            raise ParameterError(name, i, each, f"{name}[{i}] = {each!r:.80}: must be {demand}")
+        require(name, each, kinds, demand, index=i)
 
 
 def _from_urdf(

@@ -41,6 +41,19 @@ def wrong(name: str, value: object, problem: str) -> ParameterError:
     return ParameterError(name, None, value, name + problem)
 
 
+def require(
+    name: str, value: object, classes: type | tuple[type, ...], demand: str, *, index: int | None = None
+) -> None:
+    """Raise ParameterError unless a value, or the entry of that index, is an object of the classes.
+
+    demand: the requirement in words, for example 'an arm or a Robot'.
+    """
+    if not isinstance(value, classes):
+        where = name if index is None else f"{name}[{index}]"
+        given = f"the class {value.__name__}" if isinstance(value, type) else type(value).__name__
+        raise ParameterError(name, index, value, f"{where} = {value!r:.80}: must be {demand}, got {given}")
+
+
 def not_one_of(name: str, value: object, choices: Iterable[str]) -> ParameterError:
     """ParameterError for a word that is not one of the choices, with the closest choice as a suggestion."""
     words = list(choices)

@@ -25,6 +25,8 @@ else:
 
 REQUIRED: Any = inspect.Parameter.empty
 
+LIBRARY: set[type] = set()  # Classes that data() has made.
+
 
 @dataclass(frozen=True)
 class Parameter:
@@ -157,7 +159,8 @@ class Data:
     """A frozen data class that can be pickled. repr() is a constructor call; objects with equal repr() are equal."""
 
     def __post_init__(self) -> None:
-        for name, declared in parameters(type(self)).items():
+        vars(self).update(_kept(type(self)))
+        for name, declared in parameters(library_class(type(self))).items():
             object.__setattr__(self, name, declared.check(getattr(self, name)))
         self._finish()
 
@@ -166,11 +169,11 @@ class Data:
 
     def _values(self) -> dict[str, Any]:
         """Arguments of the constructor, by name."""
-        return {name: getattr(self, name) for name in parameters(type(self))}
+        return {name: getattr(self, name) for name in parameters(library_class(type(self)))}
 
     def _given(self) -> dict[str, Any]:
         """Arguments of the constructor that differ from their defaults."""
-        known, values = parameters(type(self)), self._values().items()
+        known, values = parameters(library_class(type(self))), self._values().items()
         return {n: v for n, v in values if known[n].required or _text(v) != _text(known[n].check(known[n].default))}
 
     def __eq__(self, other: object) -> bool:
@@ -184,7 +187,32 @@ class Data:
         return f"{type(self).__name__}({given})"
 
     def __reduce__(self) -> tuple[Any, ...]:
+        if library_class(type(self)) is not type(self):  # The constructor of a subclass may have other arguments.
+            return _restored, (type(self), self._values())
         return partial(type(self), **self._given()), ()
+
+
+def library_class(cls: type) -> type:
+    """The class that determines the meaning of objects of a class: the class itself, or its nearest parent, in the
+    library."""
+    return next((each for each in cls.__mro__ if each in LIBRARY), cls)
+
+
+@cache
+def _kept(cls: type) -> dict[str, Any]:
+    """Class variables of the library that a subclass outside the library hides, with the values of the library."""
+    meaning = library_class(cls)
+    hidden = {name for each in cls.__mro__[: cls.__mro__.index(meaning)] for name in vars(each)}
+    static = {name: inspect.getattr_static(meaning, name, None) for name in hidden if not name.startswith("__")}
+    known = parameters(meaning)
+    return {n: v for n, v in static.items() if hasattr(meaning, n) and n not in known and not hasattr(v, "__get__")}
+
+
+def _restored(cls: type[Data], values: dict[str, Any]) -> Data:
+    thing = cls.__new__(cls)
+    vars(thing).update(values)
+    thing.__post_init__()
+    return thing
 
 
 D = TypeVar("D", bound=Data)
@@ -194,6 +222,7 @@ D = TypeVar("D", bound=Data)
 def data(cls: type[D]) -> type[D]:
     """Make a subclass of Data a frozen data class, and add a section with the parameters to its docstring."""
     made = dataclass(frozen=True, eq=False, repr=False)(cls)
+    LIBRARY.add(made)
     entries = "\n".join(_entry(each) for each in parameters(made).values())
     made.__doc__ = f"{inspect.getdoc(cls)}\n\nParameters\n----------\n{entries}\n"
     return made

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from ._core import TIME_LAWS, circle, in_plane, line, lissajous, sequence, tricuspid, waypoints, with_rotation
 from ._core import Path as CorePath
 from ._types import ArrayField, DerivedField, OptionalArrayField
+from .errors import require
 from .parameter import POSITIVE, Data, Parameter, data, parameter, parameters
 
 __all__ = ["Circle", "InPlane", "Line", "Lissajous", "Path", "Sequence", "Tricuspid", "Waypoints", "WithRotation"]
@@ -173,6 +174,7 @@ class InPlane(Path):
     )
 
     def _finish(self) -> None:
+        require("path", self.path, Path, "a path")
         axes = np.eye(3)[["xyz".index(axis) for axis in self.plane]] if isinstance(self.plane, str) else self.plane
         CorePath.__init__(self, in_plane(self.path, axes))
 
@@ -191,6 +193,10 @@ class WithRotation(Path):
     _: KW_ONLY
     time_law: str = parameter("Time law of the rotation.", default="quintic", choices=TIME_LAWS)
 
+    def _finish(self) -> None:
+        require("path", self.path, Path, "a path")
+        super()._finish()
+
 
 @data
 class Sequence(Path):
@@ -200,6 +206,9 @@ class Sequence(Path):
     paths: tuple[Path, ...] = parameter("Paths in their order, at least one.")
 
     def _finish(self) -> None:
+        require("paths", self.paths, (list, tuple), "a sequence of paths")
+        for i, each in enumerate(self.paths):
+            require("paths", each, Path, "a path", index=i)
         parts = (path.paths if isinstance(path, Sequence) else (path,) for path in self.paths)
         object.__setattr__(self, "paths", sum(parts, ()))
         super()._finish()

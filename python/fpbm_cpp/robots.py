@@ -14,7 +14,7 @@ from ._core import PRESETS, ROBOT_PRESETS, robot_preset
 from ._core import Robot as CoreRobot
 from ._types import ArrayField
 from .arms import ARMS, IDENTITY, Arm, Joint, JointLimits, SerialArm
-from .errors import ParameterError, not_one_of, wrong
+from .errors import not_one_of, require, wrong
 from .parameter import NOT_NEGATIVE, Data, Parameter, data, parameter
 
 __all__ = ["NamedFrame", "Robot", "TreeJoint"]
@@ -67,14 +67,16 @@ class Robot(Data, CoreRobot):
 
     def _finish(self) -> None:
         for i, each in enumerate(self.joints):
-            if not isinstance(each, TreeJoint):
-                raise ParameterError("joints", i, each, f"joints[{i}] = {each!r:.80}: must be a TreeJoint")
+            require("joints", each, TreeJoint, "a TreeJoint", index=i)
+            require(f"joints[{i}].joint", each.joint, Joint, "a Joint")
         named = tuple(
             each if each.joint.name else replace(each, joint=replace(each.joint, name=f"joint_{i}"))
             for i, each in enumerate(self.joints, 1)
         )
         object.__setattr__(self, "joints", named)
         object.__setattr__(self, "named_frames", tuple(self.named_frames))
+        for i, frame in enumerate(self.named_frames):
+            require("named_frames", frame, NamedFrame, "a NamedFrame", index=i)
         seen: set[str] = set()
         for frame in self.named_frames:
             if frame.name in seen:

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from ._core import Scheme as CoreScheme
 from ._types import ArrayField, OptionalArrayField
-from .parameter import NOT_NEGATIVE, POSITIVE, Data, Parameter, data, parameter
+from .parameter import NOT_NEGATIVE, POSITIVE, Data, Parameter, data, library_class, parameter
 
 __all__ = ["FPBM", "MAN", "MVN", "WMVN", "Balanced", "Scheme", "WMVNAcceleration"]
 
@@ -58,6 +58,9 @@ class Scheme(Data, CoreScheme):
     )
 
     def _finish(self) -> None:
+        if library_class(type(self)) not in SCHEMES.values():
+            names = ", ".join(each.__name__ for each in SCHEMES.values())
+            raise TypeError(f"{type(self).__name__}: is not a scheme: must be derived from one of {names}")
         CoreScheme.__init__(self, self.level, {**self.fixed, **self._values()})
 
 
@@ -137,8 +140,8 @@ class FPBM(AccelerationScheme):
     kind = "fpbm"
     alpha: float = parameter(like=ALPHA)
     weights: ArrayField = parameter(like=WEIGHTS)
-    k1: float = parameter("Feedback gain on velocity.", NOT_NEGATIVE, usual=10.0, unit="1/s")
-    k2: float = parameter("Feedback gain on position.", NOT_NEGATIVE, usual=25.0, unit="1/s^2")
+    k1: float = parameter("Feedback gain on velocity.", NOT_NEGATIVE, default=10.0, unit="1/s")
+    k2: float = parameter("Feedback gain on position.", NOT_NEGATIVE, default=25.0, unit="1/s^2")
 
 
 # Classes of schemes, by the kind in a table.

@@ -8,8 +8,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from ._types import Array, OptionalArrayField
-from .errors import wrong
+from ._types import OptionalArrayField
+from .errors import require, wrong
 from .parameter import POSITIVE, Data, Parameter, data, parameter
 from .tasks import POSITION, AxisTask, PositionTask
 
@@ -51,60 +51,42 @@ class TaskBounds(Data):
 
     def _finish(self) -> None:
         task = self.task
+        require("task", task, (PositionTask, AxisTask), "a PositionTask or an AxisTask")
         if isinstance(task, PositionTask):
             if task.axes != "base":
                 raise wrong("task.axes", task.axes, f" = {task.axes!r}: must be 'base', the axes of the bounds")
-        elif not isinstance(task, AxisTask):
-            raise wrong("task", task, f" = {task!r:.80}: must be a PositionTask or an AxisTask")
         elif task.x is None:
             raise wrong("task.x", None, ": must be given: the bounded angle is measured from this direction")
         if task.reference_frame is not None:
             raise wrong("task.reference_frame", task.reference_frame, ": must be None: bounds are in the base frame")
-        rows = len(task.rows or POSITION) if isinstance(task, PositionTask) else 1
-        for name, missing in (("lower", -inf), ("upper", inf)):
-            values = getattr(self, name)
-            values = np.full(rows, missing) if values is None else np.atleast_1d(values)
-            if values.shape not in ((rows,), (1,)):
-                raise wrong(name, values, f" has {len(values)} entries: must have {rows}, one for each row")
-            object.__setattr__(self, "_" + name, np.broadcast_to(values, (rows,)))
-        for i, (low, high) in enumerate(zip(self._lower, self._upper)):
+        rows = tuple(task.rows or POSITION) if isinstance(task, PositionTask) else ("angle",)
+        lower, upper = self._values_of("lower", -inf, len(rows)), self._values_of("upper", inf, len(rows))
+        for i, (low, high) in enumerate(zip(lower, upper)):
             if not low < high:
-                raise wrong("lower", float(low), f"[{i}] = {low:g}: must be below upper")
-        if isinstance(task, AxisTask) and self.lower is not None and not 0.0 <= self._lower[0] < pi:
-            raise wrong("lower", self.lower, f" = {self._lower[0]:g}: must be an angle from 0 to pi")
-
-    _lower: ClassVar[Array]
-    _upper: ClassVar[Array]
+                raise wrong("lower", low, f"[{i}] = {low:g}: must be below upper")
+        if isinstance(task, AxisTask) and self.lower is not None and not 0.0 <= lower[0] < pi:
+            raise wrong("lower", self.lower, f" = {lower[0]:g}: must be an angle from 0 to pi")
+        by_row = dict(zip(rows, zip(lower, upper)))
+        corners = [by_row.get(row, (-inf, inf)) for row in POSITION]
+        vars(self).update(
+            selected=[row in rows for row in POSITION],
+            lower_corner=[low for low, _ in corners],
+            upper_corner=[high for _, high in corners],
+            least_angle=max(lower[0], 0.0),
+            largest_angle=upper[0],
+        )
 
     # Read by the compiled part.
+    selected: ClassVar[list[bool]]  #: Whether x, y and z are rows of the task.
+    lower_corner: ClassVar[list[float]]  #: Lower bounds of x, y and z [m].
+    upper_corner: ClassVar[list[float]]  #: Upper bounds of x, y and z [m].
+    least_angle: ClassVar[float]  #: Least angle of an axis [rad].
+    largest_angle: ClassVar[float]  #: Largest angle of an axis [rad]; infinite if there is no bound.
 
-    @property
-    def selected(self) -> list[bool]:
-        """Whether x, y and z are rows of the task."""
-        assert isinstance(self.task, PositionTask)
-        return [row in (self.task.rows or POSITION) for row in POSITION]
-
-    @property
-    def lower_corner(self) -> list[float]:
-        """Lower bounds of x, y and z [m]."""
-        return self._corner(self._lower, -inf)
-
-    @property
-    def upper_corner(self) -> list[float]:
-        """Upper bounds of x, y and z [m]."""
-        return self._corner(self._upper, inf)
-
-    @property
-    def least_angle(self) -> float:
-        """Least angle of an axis [rad]."""
-        return max(float(self._lower[0]), 0.0)
-
-    @property
-    def largest_angle(self) -> float:
-        """Largest angle of an axis [rad]; infinite if there is no bound."""
-        return float(self._upper[0])
-
-    def _corner(self, values: Array, missing: float) -> list[float]:
-        assert isinstance(self.task, PositionTask)
-        rows = list(self.task.rows or POSITION)
-        return [float(values[rows.index(row)]) if row in rows else missing for row in POSITION]
+    def _values_of(self, name: str, missing: float, rows: int) -> list[float]:
+        """One bound for each row."""
+        given = getattr(self, name)
+        values = np.full(rows, missing) if given is None else np.atleast_1d(given)
+        if values.shape not in ((rows,), (1,)):
+            raise wrong(name, values, f" has {len(values)} entries: must have {rows}, one for each row")
+        return [float(value) for value in np.broadcast_to(values, (rows,))]

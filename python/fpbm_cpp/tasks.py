@@ -8,9 +8,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from ._core import Task as CoreTask
 from ._types import ArrayField, OptionalArrayField
-from .errors import not_one_of, wrong
-from .parameter import NOT_NEGATIVE, Data, Parameter, data, parameter
+from .errors import not_one_of, require, wrong
+from .parameter import NOT_NEGATIVE, Data, Parameter, data, library_class, parameter
 
 __all__ = ["AxisTask", "CenterOfMassTask", "OrientationTask", "PoseTask", "PositionTask", "PostureTask"]
 __all__ += ["RelativePoseTask", "Stack", "Task"]
@@ -30,8 +31,8 @@ AXES = Parameter(
 
 
 @data
-class Task(Data):
-    """Base class of the tasks of a stack.
+class Task(Data, CoreTask):
+    """Base class of the tasks of a stack. A subclass of a task has the meaning of its parent.
 
     At acceleration level, the error of a task obeys e'' + k1 e' + k2 e = 0; at velocity level, e' + k e = 0.
     """
@@ -44,6 +45,10 @@ class Task(Data):
     k: float = parameter("Feedback gain at velocity level.", NOT_NEGATIVE, default=5.0, unit="1/s")
 
     def _finish(self) -> None:
+        if library_class(type(self)) not in TASKS.values():
+            names = ", ".join(each.__name__ for each in TASKS.values())
+            raise TypeError(f"{type(self).__name__}: is not a task: must be derived from one of {names}")
+        CoreTask.__init__(self, self.kind)
         if not self.name:
             object.__setattr__(self, "name", self.kind)
 
@@ -208,6 +213,7 @@ class Stack:
     """
 
     levels: tuple[tuple[Task, ...], ...]
+    tasks: tuple[Task, ...]  #: All tasks, higher levels first.
 
     def __init__(self, *levels: Task | Sequence[Task]) -> None:
         made = tuple(tuple(level) if isinstance(level, (list, tuple)) else (level,) for level in levels)
@@ -218,19 +224,14 @@ class Stack:
             if not level:
                 raise wrong(f"levels[{k}]", level, " is empty: must have a task")
             for task in level:
-                if not isinstance(task, Task) or not hasattr(task, "kind"):
-                    raise wrong(f"levels[{k}]", task, f" has {task!r:.80}: must be a task, or a sequence of tasks")
+                require(f"levels[{k}]", task, Task, "a task, or a sequence of tasks")
                 if task.name in names:
                     raise wrong(
                         f"levels[{k}]", task, f" has a second task with the name {task.name!r}: give another name="
                     )
                 names.append(task.name)
         self.levels = made
-
-    @property
-    def tasks(self) -> tuple[Task, ...]:
-        """All tasks, higher levels first."""
-        return tuple(task for level in self.levels for task in level)
+        self.tasks = tuple(task for level in made for task in level)
 
     def error_sizes(self, dof: int) -> list[int]:
         """Number of entries in the error of each task, for dof joints."""

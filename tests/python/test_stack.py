@@ -472,3 +472,19 @@ def test_an_arm_continues_after_a_wall(panda, level):
     assert place[-1] < 1e-3
     assert np.linalg.norm(run.errors["upright"][2500:], axis=1).max() < 1e-4
     assert excess(panda.limits, run.q) < 1e-9
+
+
+def test_one_path_of_several_tasks_names_its_task(panda, balanced):
+    """A dictionary of one path needs no task=, as in track(), also in sweep()."""
+    stack = fp.Stack(fp.PositionTask(name="hand"), fp.PositionTask("panda_joint4", name="elbow"))
+    line = fp.Line([0, 0, 0.02], 0.1)
+    run = fp.track(panda, {"hand": line}, balanced, READY, stack=stack)
+    one = fp.sweep(panda, {"hand": line}, balanced, READY, stack=stack, limits=panda.limits, motions=True)
+    assert np.array_equal(one.motions[0, 0].q, run.q)
+    assert one.motions[0, 0].task == "hand"
+    with pytest.raises(fp.ParameterError, match="path = .*: has paths of 2 tasks|path has paths of 2 tasks"):
+        fp.sweep(panda, {"hand": line, "elbow": line}, balanced, READY, stack=stack)
+
+
+def test_gains_have_the_defaults_of_the_command_line():
+    assert fp.FPBM(0.6, [1, 2, 3]) == fp.FPBM(0.6, [1, 2, 3], 10, 25)

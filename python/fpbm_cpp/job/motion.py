@@ -224,7 +224,12 @@ def _taken(said: Any, full: Any) -> Iterator[str]:
 def _filled(section: str, said: Table) -> Table:
     """A table with the usual values of its kind, where they differ from the defaults of the library."""
     declared = known(section, said.get("kind")).items()
-    usual = {key: each.usual for key, each in declared if each.usual is not each.default or section == "run"}
+    written = ("k1", "k2") if section == "scheme" else ()  # A full job states the gains of the scheme.
+    usual = {
+        key: each.usual
+        for key, each in declared
+        if each.usual is not each.default or section == "run" or key in written
+    }
     return {**{key: to_table(value) for key, value in usual.items() if value not in (REQUIRED, None)}, **said}
 
 

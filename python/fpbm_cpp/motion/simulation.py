@@ -1,6 +1,6 @@
 """A whole motion: simulated without limits, or tracked within the joint limits."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from .._core import failed, rollout
 from ..arms import Arm, JointLimits
 from ..clearance import Clearance
-from ..errors import ResolutionError, not_one_of, wrong
+from ..errors import ResolutionError, not_one_of, require, wrong
 from ..paths import Path
 from ..robots import Robot
 from ..schemes import Scheme
@@ -31,6 +31,7 @@ class LimitOptions(NamedTuple):
     null_damping: float = 2.0
     clearance: Clearance | None = None
     bounds: Sequence[TaskBounds] = ()
+    recover_start: bool = False
     stack: Stack | None = None
     task: str = ""  # Task of the stack that follows the path.
     other_paths: Mapping[str, Path] = {}  # Paths of other tasks of the stack, by name.
@@ -81,6 +82,7 @@ def simulate(
     partial : bool
         If the motion stops early, return the run before the stop instead of raising.
     """
+    require_motion(arm, path, scheme)
     options = motion_options(arm, dt, hold, qd0)
     name, kind, followed, others = task_and_paths(path, task, stack)
     law = None if stack is None else without_limits(arm, stack, name)._replace(other_paths=others)
@@ -116,6 +118,7 @@ def track(
     null_damping: float = 2.0,
     clearance: Clearance | None = None,
     bounds: Sequence[TaskBounds] = (),
+    recover_start: bool = False,
 ) -> Run:
     """Move an arm along a path under a scheme, within its joints' limits and through singular postures.
 
@@ -133,11 +136,13 @@ def track(
         it time to arrive.
     limits, error_bound, integral_gain, integral_bound, stall_time
         As for Tracker.
-    singular_radius, singular_brake, null_damping, clearance, bounds
+    singular_radius, singular_brake, null_damping, clearance, bounds, recover_start
         As for Tracker.
     """
+    require_motion(arm, path, scheme)
     options = motion_options(arm, dt, hold, qd0)
     name, kind, followed, others = task_and_paths(path, task, stack)
+    require("bounds", bounds, Iterable, "TaskBounds in a sequence")
     limited = LimitOptions(
         limits,
         error_bound,
@@ -149,6 +154,7 @@ def track(
         null_damping,
         clearance,
         tuple(bounds),
+        bool(recover_start),
         stack,
         name,
         others,
@@ -157,12 +163,19 @@ def track(
     return make_run(outcome, q0, arm, path, scheme, name, {**options, **limit_arguments(limited)})
 
 
+def require_motion(arm: object, path: object, *schemes: object) -> None:
+    """Raise ParameterError unless the arguments of a motion are an arm, a path and schemes."""
+    require("arm", arm, (Arm, Robot), "an arm or a Robot")
+    require("path", path, (Path, Mapping), "a path, or a dictionary of paths by task name")
+    for scheme in schemes:
+        require("scheme", scheme, Scheme, "a scheme")
+
+
 def path_task(task: str | None, stack: Stack | None) -> tuple[str, str]:
     """Name and kind of the task that follows the path; the kind is 'position' or 'pose'."""
     if stack is None:
         return task or "position", task or "position"
-    if not isinstance(stack, Stack):
-        raise wrong("stack", stack, f" = {stack!r:.80}: must be a Stack")
+    require("stack", stack, Stack, "a Stack")
     followed = stack.follower(task)
     return followed.name, "pose" if isinstance(followed, PoseTask) else "position"
 
@@ -175,12 +188,21 @@ def task_and_paths(path: Paths, task: str | None, stack: Stack | None) -> tuple[
         raise wrong("path", path, f" = {path!r:.80}: must be one path, or paths by task names of a stack")
     for each, followed in path.items():
         path_task(each, stack)
-        if not isinstance(followed, Path):
-            raise wrong(f"path[{each!r}]", followed, f" = {followed!r:.80}: must be a path")
+        require(f"path[{each!r}]", followed, Path, "a path")
     name = next(iter(path)) if task is None else task
     if name not in path:
         raise not_one_of("task", name, path)
     return *path_task(name, stack), path[name], {each: followed for each, followed in path.items() if each != name}
+
+
+def one_path(path: Paths, task: str | None, stack: Stack | None) -> tuple[Path, str | None]:
+    """The path and its task, for functions of one path. A dictionary of one path names the task."""
+    name, _, followed, others = task_and_paths(path, task, stack)
+    if others:
+        raise wrong(
+            "path", path, f" has paths of {len(path)} tasks: must be one path; simulate() and track() accept more"
+        )
+    return followed, name if isinstance(path, Mapping) else task
 
 
 def limit_arguments(options: LimitOptions) -> dict[str, Any]:

@@ -1,6 +1,6 @@
 """Sweeps: motions of every scheme from every start, and their key figures."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -17,8 +17,17 @@ from ..paths import Path
 from ..robots import Robot
 from ..schemes import Scheme
 from ..tasks import Stack
-from .run import LIMITED
-from .simulation import LimitOptions, limit_arguments, make_run, motion_options, path_task, without_limits
+from .run import LIMITED, Paths
+from .simulation import (
+    LimitOptions,
+    limit_arguments,
+    make_run,
+    motion_options,
+    one_path,
+    path_task,
+    require_motion,
+    without_limits,
+)
 from .workers import run_chunks
 
 # True for a progress bar in the terminal or in a notebook, or a function of (done, total).
@@ -107,7 +116,7 @@ class Sweep:
 
 def sweep(
     arm: Arm,
-    path: Path,
+    path: Paths,
     schemes: Scheme | Sequence[Scheme],
     q0s: ArrayLike,
     dt: float = 1e-3,
@@ -159,9 +168,11 @@ def sweep(
     motions : bool
         Also keep the whole motions, in the result's motions: 8 bytes for each number in the arrays of simulate().
     """
+    require_motion(arm, path)
+    path, task = one_path(path, task, stack)
     if isinstance(arm, Robot):
         raise wrong("arm", arm, f" = {arm}: must be an arm; simulate() and track() accept a Robot")
-    laws = (schemes,) if isinstance(schemes, Scheme) else tuple(schemes)
+    laws = tuple(schemes) if isinstance(schemes, Iterable) else (schemes,)
     if not laws:
         raise wrong("schemes", schemes, ": must have at least one scheme")
     for i, law in enumerate(laws):

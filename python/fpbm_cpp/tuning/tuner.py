@@ -9,11 +9,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arms import Arm, JointLimits
 from ..errors import TuneInterrupted
-from ..motion.run import Run
-from ..motion.simulation import path_task
+from ..motion.run import Paths, Run
+from ..motion.simulation import one_path, path_task
 from ..motion.sweeping import Progress, Sweep, reporting, sweep
 from ..parameter import Parameter
-from ..paths import Path
 from ..schemes import FPBM
 from ..tasks import Stack
 from .result import Trials, Tuning, joined, sensitivity
@@ -65,7 +64,7 @@ def measure(objective: str | OfRun, limits: JointLimits) -> tuple[str, str, OfRu
 
 def tune(
     arm: Arm,
-    path: Path,
+    path: Paths,
     q0: ArrayLike,
     objective: str | OfRun = "peak_velocity",
     *,
@@ -118,6 +117,7 @@ def tune(
     trials, seed : int
         Number of schemes to try, and seed of the random numbers.
     """
+    path, task = one_path(path, task, stack)
     start = Parameter("q0", np.ndarray, shape=f"({arm.dof},)").check(q0)
     count = Parameter("trials", int, low=1, whole=True).check(trials)
     seed = Parameter("seed", int, low=0, whole=True).check(seed)

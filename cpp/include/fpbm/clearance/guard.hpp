@@ -43,6 +43,12 @@ class Guard {
     validation::require_size("joints of the clearance", clearance_.robot().dof(), start.q.size());
     acting_ticks_ = plan_.acting_ticks(limits);
     if (empty()) return;
+    for (Eigen::Index i = 0; i < start.q.size() && !limits.is_viable(start, last); ++i) {
+      // Only from rest does the stop of a joint outside its range have the bounds that the stopping trajectory assumes.
+      if (start.qd(i) == Scalar(0) && last(i) == Scalar(0)) continue;
+      validation::fail(validation::element("qd0", i), start.qd(i),
+                       "0 before a start outside the bounds with a clearance or task bounds: stop the arm first");
+    }
     near_pairs_.set_posture(clearance_, start.q);
     const auto [pair, distance] = clearance_.nearest_pair(near_pairs_.here(), 0, clearance_.shape_pairs());
     if (!(distance >= clearance_.margin())) {

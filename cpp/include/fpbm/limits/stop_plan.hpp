@@ -198,6 +198,8 @@ class StopPlan {
     const Scalar most = limits.bounds().acceleration(i);
     if (!limits.bounds_jerk(i)) return std::clamp(-state.qd(i) / limits.tick(), -most, most);
     const auto joint = limits.jerk_limited(i);
+    const bool within = limits.bounds().lower(i) <= state.q(i) && state.q(i) <= limits.bounds().upper(i);
+    if (!within) return joint.brake(state.qd(i), before(i));  // A joint beyond its range stops there.
     const auto [low, high] = joint.viable(joint.after(before(i)), state.q(i), state.qd(i));
     return std::clamp(joint.brake(state.qd(i), before(i)), low, high);
   }

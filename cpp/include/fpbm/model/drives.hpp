@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fpbm/core/validation.hpp"
+#include "fpbm/model/continuous_joints.hpp"
 #include "fpbm/model/tree.hpp"
 
 namespace fpbm {
@@ -33,6 +34,7 @@ class Drives {
       const auto& joint = joint_of(source, i);
       if (joint.mimic.joint >= 0) continue;
       if constexpr (kMayFollow) drive_[index(i)] = static_cast<int>(drive);
+      if (is_continuous(joint.type, joint.bounds)) limits_.continuous |= joint_bit(drive);
       limits_.set(drive++, joint.bounds);
     }
     follows_ = Joints != N || drive < count;
@@ -143,6 +145,8 @@ class Drives {
       }
       return;
     }
+    // A turn of the drive leaves the posture unchanged only if it moves every follower by whole turns.
+    if (joint.type == JointType::kPrismatic || ratio != std::round(ratio)) limits_.continuous &= ~joint_bit(k);
     Scalar& lower = limits_.lower(k);
     Scalar& upper = limits_.upper(k);
     const Scalar low = (bounds.lower - offset) / ratio;
@@ -155,6 +159,7 @@ class Drives {
     if (bounds.deceleration < JointBounds<Scalar>::kNone) {
       validation::fail(name + ".deceleration", bounds.deceleration, "infinite for a mimic joint");
     }
+    if (std::isfinite(lower) || std::isfinite(upper)) limits_.continuous &= ~joint_bit(k);
     if (!(lower < upper)) {
       validation::fail(leader + ".lower", lower, "below upper = ", upper, " for its mimic joints to keep their bounds");
     }

@@ -61,6 +61,9 @@ struct JointLimits {
   /// See JointBounds. [rad/s, rad/s²] or [m/s, m/s²]
   Vector<N, Scalar> velocity_offset = filled<Vector<N, Scalar>>(acceleration.size());
   Vector<N, Scalar> deceleration = unbounded(acceleration.size());
+  /// Bits of the continuous joints: joints that rotate without bounds, so that positions that differ by 2π are equal. A
+  /// joint with a finite bound is never continuous.
+  JointBits continuous = 0;
 
   /// Limits of dof joints without bounds.
   [[nodiscard]] static JointLimits none(Eigen::Index dof) {
@@ -70,9 +73,10 @@ struct JointLimits {
 
   template <typename Other>
   [[nodiscard]] JointLimits<N, Other> cast() const {
-    return {lower.template cast<Other>(),        upper.template cast<Other>(), velocity.template cast<Other>(),
-            acceleration.template cast<Other>(), jerk.template cast<Other>(),  velocity_offset.template cast<Other>(),
-            deceleration.template cast<Other>()};
+    return {lower.template cast<Other>(),        upper.template cast<Other>(),
+            velocity.template cast<Other>(),     acceleration.template cast<Other>(),
+            jerk.template cast<Other>(),         velocity_offset.template cast<Other>(),
+            deceleration.template cast<Other>(), continuous};
   }
 
   /// Sets the bounds of joint i.

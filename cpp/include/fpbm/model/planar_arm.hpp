@@ -42,8 +42,12 @@ class PlanarArm {
   /// Characteristic length: the sum of the lengths of the links [m].
   [[nodiscard]] Scalar length() const noexcept { return reach_; }
 
-  /// Limits without bounds.
-  [[nodiscard]] JointLimits<N, Scalar> limits() const { return JointLimits<N, Scalar>::none(lengths_.size()); }
+  /// Limits without bounds: all joints are continuous.
+  [[nodiscard]] JointLimits<N, Scalar> limits() const {
+    auto limits = JointLimits<N, Scalar>::none(lengths_.size());
+    for (Eigen::Index i = 0; i < lengths_.size(); ++i) limits.continuous |= joint_bit(i);
+    return limits;
+  }
 
   /// Tip and J at q, for the task spaces Position<2> and PlanarPose. Jd does not change.
   template <typename Space>

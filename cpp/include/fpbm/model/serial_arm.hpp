@@ -12,6 +12,7 @@
 #include "fpbm/linalg/pair.hpp"
 #include "fpbm/linalg/sums.hpp"
 #include "fpbm/model/chain.hpp"
+#include "fpbm/model/continuous_joints.hpp"
 #include "fpbm/model/forward_pass.hpp"
 #include "fpbm/model/frame.hpp"
 #include "fpbm/model/kinematics.hpp"
@@ -55,6 +56,7 @@ class SerialArm {
       }
       if (i > 0) length_ += norm(joint.placement.p);
       limits_.set(i, joint.bounds);
+      if (is_continuous(joint.type, joint.bounds)) limits_.continuous |= joint_bit(i);
     }
     length_ += norm(chain.tip.p);
     if (!(length_ > Scalar(0))) length_ = Scalar(1);

@@ -7,6 +7,7 @@
 #include "fpbm/core/level.hpp"
 #include "fpbm/core/validation.hpp"
 #include "fpbm/linalg/entrywise.hpp"
+#include "fpbm/model/continuous_joints.hpp"
 #include "fpbm/model/joint.hpp"
 
 namespace fpbm {
@@ -17,8 +18,9 @@ namespace fpbm {
 ///
 /// The damping kₙ [1/s] stops the self-motion. The rest posture q_rest [rad] attracts the joints with the stiffness kₚ
 /// ([1/s²], or [1/s] at velocity level). Centring moves the joints away from their bounds. c ([rad/s²], or [rad/s]) is
-/// the free choice in the general solutions (3) and (5) of docs/equations.md. Each function with_… returns a copy with
-/// one more part, and throws std::invalid_argument if a value is out of range.
+/// the free choice in the general solutions (3) and (5) of docs/equations.md. Differences of the positions of
+/// continuous joints are modulo 2π: a tracker, a rollout and Python set these joints. Each function with_… returns a
+/// copy with one more part, and throws std::invalid_argument if a value is out of range.
 ///
 /// Repetitive motion planning (Zhang and others, Mechatronics 18, 2008) removes the drift of the joints on closed
 /// paths. With the gain λ, repetitive motion planning equals a rest posture at the start posture: at velocity level
@@ -66,6 +68,13 @@ class NullSpace {
     return with_constant(c);
   }
 
+  /// Bits of the continuous joints, for the rest posture.
+  [[nodiscard]] NullSpace with_continuous_joints(JointBits joints) const {
+    NullSpace changed = *this;
+    changed.continuous_ = joints;
+    return changed;
+  }
+
   /// Null space with lanes: get(lane) returns the null space of one lane.
   template <typename Get>
   [[nodiscard]] static NullSpace side_by_side(const Get& get) {
@@ -75,10 +84,12 @@ class NullSpace {
     for (std::size_t lane = 0; lane < Scalar::size(); ++lane) {
       result.has_damping_ |= get(lane).has_damping_;
       result.has_constant_ |= get(lane).has_constant_;
+      result.continuous_ |= get(lane).continuous_;
     }
     for (Eigen::Index i = 0; i < dof; ++i) {
       result.stiffness_(i) = Scalar([&](auto lane) { return get(lane).stiffness_(i); });
       result.constant_(i) = Scalar([&](auto lane) { return get(lane).constant_(i); });
+      result.rest_(i) = Scalar([&](auto lane) { return get(lane).rest_(i); });
     }
     return result;
   }
@@ -116,6 +127,7 @@ class NullSpace {
       z = entrywise(z, [&](Eigen::Index i) {
         return z.coeff(i) + (constant_.coeff(i) - stiffness_.coeff(i) * state.q.coeff(i));
       });
+      if (continuous_ != 0) remove_turns(state.q, z);
     }
     if constexpr (kLevel == Level::kAcceleration) {
       z = entrywise(z, [&](Eigen::Index i) { return z.coeff(i) - damping_ * state.qd.coeff(i); });
@@ -130,8 +142,22 @@ class NullSpace {
   /// Adds stiffness ∘ (middle − q), entrywise.
   [[nodiscard]] NullSpace with_spring(const Vector<N, Scalar>& stiffness, const Vector<N, Scalar>& middle) const {
     NullSpace changed = with_constant(entrywise(middle, [&](Eigen::Index i) { return stiffness(i) * middle(i); }));
-    changed.stiffness_ += stiffness;
+    for (Eigen::Index i = 0; i < middle.size(); ++i) {
+      const Scalar before = changed.stiffness_(i);
+      changed.stiffness_(i) += stiffness(i);
+      if (all_of(changed.stiffness_(i) > Scalar(0))) {
+        changed.rest_(i) = (before * changed.rest_(i) + stiffness(i) * middle(i)) / changed.stiffness_(i);
+      }
+    }
     return changed;
+  }
+
+  /// Removes whole turns of continuous joints from the differences q_rest − q in z.
+  [[gnu::noinline]] void remove_turns(const Vector<N, Scalar>& q, Vector<N, Scalar>& z) const noexcept {
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      if ((continuous_ >> i & 1U) == 0) continue;
+      z.coeffRef(i) -= stiffness_.coeff(i) * whole_turns(Scalar(rest_.coeff(i) - q.coeff(i)));
+    }
   }
 
   [[nodiscard]] NullSpace with_constant(const Vector<N, Scalar>& added) const {
@@ -139,6 +165,7 @@ class NullSpace {
     if (!has_constant_) {
       changed.constant_ = filled<Vector<N, Scalar>>(added.size());
       changed.stiffness_ = filled<Vector<N, Scalar>>(added.size());
+      changed.rest_ = filled<Vector<N, Scalar>>(added.size());
       changed.has_constant_ = true;
     }
     validation::require_size("rest_posture, limits or c", added.size(), changed.constant_.size());
@@ -148,11 +175,13 @@ class NullSpace {
 
   static constexpr Eigen::Index kSize = N == Eigen::Dynamic ? 0 : N;
 
+  JointBits continuous_ = 0;
   Scalar damping_{0};
   bool has_damping_ = false;
   bool has_constant_ = false;
   Vector<N, Scalar> stiffness_ = filled<Vector<N, Scalar>>(kSize);  ///< Per joint.
   Vector<N, Scalar> constant_ = filled<Vector<N, Scalar>>(kSize);   ///< c + kₚ q_rest + constant part of centring.
+  Vector<N, Scalar> rest_ = filled<Vector<N, Scalar>>(kSize);       ///< Position at which the springs have no force.
 };
 
 }  // namespace fpbm

@@ -32,20 +32,22 @@ class LimitedState {
   using JointLimits = Limits<kLevel, N, Scalar>;
   using Result = Tick<Space, N, Scalar>;
 
-  /// start: state after a tick with the acceleration qdd0. Throws std::invalid_argument if an option is out of range.
+  /// start: state after a tick with the acceleration qdd0. continuous: bits of the continuous joints. Throws
+  /// std::invalid_argument if an option is out of range.
   LimitedState(const TrackerOptions<Scalar>& options, const JointLimits& limits, const JointState& start,
-               const JointVector& qdd0, const Guard_& guard)
+               const JointVector& qdd0, const Guard_& guard, JointBits continuous)
       : tick_{{options.dt}, start, qdd0, filled<JointVector>(qdd0.size())},
         correction_(options),
         limiter_(limits, kHasLevels && options.keep_first_level ? kReserve : Scalar(0)),
         guard_(guard),
         keeps_first_level_(kHasLevels && options.keep_first_level),
-        progress_(options, start.q) {}
+        progress_(options, start.q, continuous),
+        returning_(options.recover_start && !limits.is_viable(start, qdd0)) {}
 
-  /// Stores the start posture with its tip as the first posture of a recovery. length: the arm's characteristic length
-  /// [m].
+  /// Stores the start posture, if it is within the limits, with its tip as the first posture of a recovery. length: the
+  /// arm's characteristic length [m].
   void begin_at(const typename Space::template Point<Scalar>& tip, Scalar length) noexcept {
-    progress_.begin_at(tick_.joints.q, tip, length);
+    if (!returning_) progress_.begin_at(tick_.joints.q, tip, length);
   }
 
   [[nodiscard]] Scalar dt() const noexcept { return tick_.motion.dt; }
@@ -256,9 +258,14 @@ class LimitedState {
     if (!braking) result.status = Status::kBlocked;
   }
 
-  /// Updates the integral of the error and the detection of a stall. q: posture at the start of the tick.
+  /// Updates the integral of the error and the detection of a stall, unless the joints return from a start outside
+  /// their bounds. q: posture at the start of the tick.
   template <typename Target>
   void update_progress(const JointVector& q, const Target& now, bool recovering, const Result& result) noexcept {
+    if (returning_) {
+      returning_ = !limits().is_viable(tick_.joints, tick_.last);
+      return;
+    }
     const Scalar length = correction_.length();
     if (recovering) return progress_.recovered(tick_.joints.q, now.x, length);
     if (result.status != Status::kOk || correction_.far()) {
@@ -292,6 +299,7 @@ class LimitedState {
   Guard_ guard_;
   bool keeps_first_level_;
   Progress<Space, N, Scalar> progress_;
+  bool returning_;  ///< Whether the joints return from a start outside their bounds.
   bool stopping_ = false;
 };
 

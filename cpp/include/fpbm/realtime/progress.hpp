@@ -16,10 +16,11 @@ class Progress {
   using Distance = TaskDistance<Space, Scalar>;
   using Result = Tick<Space, N, Scalar>;
 
-  /// q0: start posture. Throws std::invalid_argument if the stall time is not positive.
-  Progress(const TrackerOptions<Scalar>& options, const JointVector& q0)
+  /// q0: start posture. continuous: bits of the continuous joints. Throws std::invalid_argument if the stall time is
+  /// not positive.
+  Progress(const TrackerOptions<Scalar>& options, const JointVector& q0, JointBits continuous)
       : stall_(options.stall_time, options.dt),
-        recovery_(q0, options.stall_time, options.dt),
+        recovery_(q0, options.stall_time, options.dt, continuous),
         recovers_(options.recovery) {}
 
   /// Stores the start posture and its tip as the first posture of a recovery. length: the arm's characteristic length

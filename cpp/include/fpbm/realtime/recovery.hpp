@@ -7,6 +7,7 @@
 
 #include "fpbm/core/types.hpp"
 #include "fpbm/limits/limits.hpp"
+#include "fpbm/model/continuous_joints.hpp"
 #include "fpbm/realtime/task_distance.hpp"
 
 namespace fpbm {
@@ -34,7 +35,9 @@ class Recovery {
   static constexpr int kPostures = 8;  ///< Remembered postures. For seven joints and a pose, the memory has 1.3 kB.
 
   /// patience: time without progress toward the posture after which a recovery ends [s]. dt: length of a tick [s].
-  Recovery(const JointVector& q, Scalar patience, Scalar dt) noexcept : patience_(patience), dt_(dt), goal_(q) {}
+  /// continuous: bits of the continuous joints.
+  Recovery(const JointVector& q, Scalar patience, Scalar dt, JointBits continuous = 0) noexcept
+      : patience_(patience), dt_(dt), continuous_(continuous), goal_(q) {}
 
   /// Whether the joints are moving to a remembered posture.
   [[nodiscard]] bool active() const noexcept { return active_; }
@@ -79,7 +82,7 @@ class Recovery {
     if (!nearer && (returned_ || !(distance < kReturned * farthest_))) return false;
     returned_ = returned_ || !nearer;
     last_distance_ = distance;
-    goal_ = memory_[best].q;
+    goal_ = nearest_turns(memory_[best].q, q, continuous_);
     start_distance_ = least_distance_ = distance_to(q);
     waited_ = Scalar(0);
     active_ = true;
@@ -174,6 +177,7 @@ class Recovery {
 
   Scalar patience_;
   Scalar dt_;
+  JointBits continuous_;
   Remembered memory_[kPostures]{};
   int count_ = 0;
   std::int64_t age_ = 0;

@@ -83,6 +83,9 @@ struct TrackerOptions {
   /// start of the tick in which the robot realises the command. Most robots need one to three ticks. 0: exact and
   /// current states, as in a simulation.
   int measured_delay = 3;
+  /// Whether the start may be outside the joints' ranges, or too fast for their bounds. The joints then return within
+  /// the bounds on velocity, acceleration and jerk. false: this start is an error.
+  bool recover_start = false;
 
   /// Damping for a scheme of an arm with dof joints, whose task has the given number of rows. Without a null space,
   /// there is no null-space damping.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "fpbm/realtime/held_level.hpp"
 #include "fpbm/realtime/limited_state.hpp"
 #include "fpbm/realtime/measured_limiter.hpp"
@@ -9,6 +11,7 @@
 #include "fpbm/realtime/require_stable.hpp"
 #include "fpbm/realtime/tick.hpp"
 #include "fpbm/realtime/tick_references.hpp"
+#include "fpbm/realtime/turns.hpp"
 #include "fpbm/scheme/set_damping.hpp"
 #include "fpbm/sim/closed_loop.hpp"
 #include "fpbm/sim/rk4.hpp"
@@ -51,8 +54,8 @@ class Tracker {
 
   /// Starts from a state, or at rest, within the limits of the arm or given limits. Throws std::invalid_argument if an
   /// option is out of range, the scheme does not suit the arm, its gains are too high for the tick, a limit is missing
-  /// (Limits), or the state violates a limit. If the scheme has no damping, the tracker sets the damping of the
-  /// options.
+  /// (Limits), or the state violates a limit and options.recover_start is false. If the scheme has no damping, the
+  /// tracker sets the damping of the options.
   Tracker(const Arm& arm, Space, const Scheme& scheme, const JointState& start, const Options& options,
           const Limits<kLevel, N, Scalar>& limits)
       : Tracker(arm, Space{}, scheme, start, options, limits, filled<JointVector>(start.q.size())) {}
@@ -62,7 +65,8 @@ class Tracker {
           const Limits<kLevel, N, Scalar>& limits, const JointVector& qdd0, const Guard_& guard = {})
       : arm_(arm),
         scheme_(scheme),
-        limited_(options, limits, start, qdd0, guard),
+        continuous_(continuous_joints(arm, limits.bounds())),
+        limited_(options, limits, start, qdd0, guard, continuous_),
         lower_levels_(options.stall_time, options.dt),
         measured_(limits, options.measured_delay),
         last_command_(qdd0) {
@@ -74,11 +78,17 @@ class Tracker {
     validation::require_joint_vector("q0", start.q, arm.dof());
     validation::require_joint_vector("qd0", start.qd, arm.dof());
     validation::require_joint_vector("qdd0", qdd0, arm.dof());
-    limits.require_viable(start, qdd0);
+    if (options.recover_start) {
+      limits.require_accelerations(start, qdd0);
+    } else {
+      limits.require_viable(start, qdd0);
+    }
     validation::require_non_negative("null_damping", options.null_damping);
     Kinematics<Space, N, Scalar> kinematics;
     arm_.kinematics(start.q, kinematics);
-    give_damping(scheme_, options.damping(arm.dof(), first_rows(kinematics).rows()));
+    DefaultDamping<Scalar> damping = options.damping(arm.dof(), first_rows(kinematics).rows());
+    damping.continuous = continuous_;
+    give_damping(scheme_, damping);
     const bool continues = kLevel == Level::kAcceleration ? has_several_tasks(arm_) : has_lower_levels(kinematics);
     require_stable(scheme_, TickOfGains<Scalar>{options.dt, options.integral_gain, continues});
     if constexpr (kGuarded) limited_.guard().require_clear(limits, start, qdd0);
@@ -119,6 +129,7 @@ class Tracker {
       if (one_acceleration) arm_.points(state.q, loop.kinematics);
     }
     if (!one_acceleration) loop.update(x);
+    remove_turns(arm_, loop.kinematics.tip, continuous_, references.stages);
     if constexpr (kHasLevels) {
       if (limited_.keeps_stopping()) held_level_.hold(references, loop.kinematics.tip, loop.kinematics.length);
     }
@@ -193,8 +204,10 @@ class Tracker {
     Loop loop{arm_, scheme_, {}, measured, filled<JointVector>(q.size())};
     X dx = Loop::packed(measured);
     loop.update(dx);
-    measure_error(loop.kinematics, reference, result);
-    resolve(loop, limited_.correction()(reference), dx, result);
+    std::array<Target, 1> now{reference};
+    remove_turns(arm_, loop.kinematics.tip, continuous_, now);
+    measure_error(loop.kinematics, now[0], result);
+    resolve(loop, limited_.correction()(now[0]), dx, result);
     result.qdd = last_command_ = limit_measured(loop, measured_, limited_, measured, last_command_, result);
     report_lower_levels(result);
     return result;
@@ -213,6 +226,8 @@ class Tracker {
   /// Acceleration of the last tick.
   [[nodiscard]] const JointVector& acceleration() const noexcept { return limited_.last(); }
   [[nodiscard]] const Arm& arm() const noexcept { return arm_; }
+  /// Bits of the continuous joints.
+  [[nodiscard]] JointBits continuous() const noexcept { return continuous_; }
   /// Enables or disables level k of a stack, counted from 0. The first level is always enabled. The commands stay
   /// within all bounds. If there is no lower level k, returns false without an effect.
   bool enable(int k, bool on) noexcept {
@@ -267,6 +282,7 @@ class Tracker {
 
   Arm arm_;
   Scheme scheme_;
+  JointBits continuous_;  ///< Bits of the continuous joints.
   LimitedState<kLevel, Space, N, Scalar, Guard_> limited_;
   typename LowerLevelsOf<Space, Scalar>::type lower_levels_;
   std::conditional_t<kHasLevels, HeldLevel<Space, Scalar>, NoHeldLevel> held_level_;

@@ -9,6 +9,7 @@
 #include "fpbm/core/validation.hpp"
 #include "fpbm/realtime/path_follower.hpp"
 #include "fpbm/realtime/tick_references.hpp"
+#include "fpbm/scheme/set_damping.hpp"
 #include "fpbm/sim/closed_loop.hpp"
 #include "fpbm/sim/motion.hpp"
 #include "fpbm/sim/rk4.hpp"
@@ -40,6 +41,7 @@ class TrackerBatch {
       validation::reject_value("trackers", trackers_.size(), " has ", trackers_.size(), " entries: must have ", kLanes,
                                ", one per lane");
     }
+    set_continuous_joints(scheme_, trackers_.front().continuous(), 0);
     for (std::size_t lane = 0; lane < kLanes; ++lane) set_lane(start_, lane, trackers_[lane].tip());
     status_.fill(Status::kOk);
   }

@@ -5,6 +5,7 @@
 
 #include "fpbm/core/level.hpp"
 #include "fpbm/core/mask.hpp"
+#include "fpbm/core/types.hpp"
 #include "fpbm/singular/damping.hpp"
 
 namespace fpbm {
@@ -14,7 +15,23 @@ template <typename Scalar = double>
 struct DefaultDamping {
   SingularDamping<Scalar> singular;  ///< Damping near singular postures.
   Scalar null_space;                 ///< Null-space damping kₙ, at acceleration level only [1/s]. 0: none.
+  JointBits continuous = 0;          ///< Continuous joints of the arm, for the null space of the scheme.
 };
+
+/// Sets the continuous joints of a scheme that has a member `null_space`, or of the scheme that a wrapper has. No
+/// effect on other schemes.
+template <typename Scheme>
+auto set_continuous_joints(Scheme& scheme, JointBits joints, int)
+    -> decltype(scheme.null_space.with_continuous_joints(joints), void()) {
+  scheme.null_space = scheme.null_space.with_continuous_joints(joints);
+}
+template <typename Scheme>
+auto set_continuous_joints(Scheme& scheme, JointBits joints, int)
+    -> decltype(set_continuous_joints(scheme.scheme, joints, 0), void()) {
+  set_continuous_joints(scheme.scheme, joints, 0);
+}
+template <typename Scheme>
+void set_continuous_joints(Scheme&, JointBits, long) {}
 
 /// Whether a scheme has the members of this library for its damping: `singular`, and at acceleration level
 /// `null_space`.
@@ -46,6 +63,7 @@ std::enable_if_t<kHasDamping<Scheme>> set_damping(Scheme& scheme, const DefaultD
       scheme.null_space = scheme.null_space.with_damping(damping.null_space);
     }
   }
+  set_continuous_joints(scheme, damping.continuous, 0);
 }
 
 /// set_damping() for a wrapper with a member `scheme`, for example ManipulabilityAscent.

@@ -6,7 +6,9 @@
 #include "fpbm/core/mask.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/validation.hpp"
+#include "fpbm/model/continuous_joints.hpp"
 #include "fpbm/model/kinematics.hpp"
+#include "fpbm/scheme/set_damping.hpp"
 #include "fpbm/sim/anchored_path.hpp"
 #include "fpbm/sim/closed_loop.hpp"
 #include "fpbm/sim/motion.hpp"
@@ -52,7 +54,7 @@ template <typename Recorder, typename Sample>
 /// With lanes, many motions run in parallel. The last q of a motion is NaN if its scheme fails or is damped, its tip
 /// leaves its path, or its steps are too long. For its status and time, run a motion with NaN again without lanes.
 template <typename Arm, typename Path, typename Scheme, typename Recorder>
-RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Path& path, const Scheme& scheme,
+RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Path& path, const Scheme& given,
                                                        const State<Arm::kDof, typename Arm::Scalar>& start,
                                                        const TimeGrid<Number<typename Arm::Scalar>>& grid,
                                                        Recorder&& record) {
@@ -66,7 +68,9 @@ RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Pat
   if (grid.duration() != path.duration()) {
     validation::fail("grid duration", grid.duration(), "the duration of the path = ", path.duration());
   }
-  scheme.require_dof(arm.dof());
+  given.require_dof(arm.dof());
+  Scheme scheme = given;
+  set_continuous_joints(scheme, continuous_joints(arm, 0), 0);
   validation::require_joint_vector("q0", start.q, arm.dof());
   X x(start.q.size(), Loop::kSecondOrder ? 2 : 1);
   x.col(0) = start.q;
