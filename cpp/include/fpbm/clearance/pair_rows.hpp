@@ -148,7 +148,8 @@ class PairRows {
     for (int e = 0; e < (between ? 1 : 2); ++e) {
       const AllJoints gradient = between ? nearest : plane.gradient_of(e);
       const JointVector g = clearance.robot().drives().by_drive(gradient);
-      const Scalar gap = (between ? plane.distance : plane.gap(e)) - clearance.margin();
+      const Scalar moved = motion.tick / Scalar(2) * plane.closing;  // Of the obstacle, until the middle of the tick.
+      const Scalar gap = (between ? plane.distance : plane.gap(e)) - moved - clearance.margin();
       const Scalar gap_slack = gap - kReserve - deviation - decrease_by_single_stops(motion, gradient);
       const Scalar end_distance = plane.distance + nearest.dot(motion.stop.line);
       Candidate row{&pair, gap, gap_slack, end_distance, plane.closing, Scalar(0)};
