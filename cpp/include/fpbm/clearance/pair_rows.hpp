@@ -112,7 +112,7 @@ class PairRows {
   /// kSoft = 0.2.
   static constexpr Scalar kClosing = Scalar(0.8);
   /// The rows use the deviation bound after the fraction t = 1/kSteps of the stop, as for one of kSteps equal steps of
-  /// Advancement. Range: 2 to 16. With 1, the jerk is 1.7 times larger.
+  /// Advancement, but at least after the tick. Range: 2 to 16. With 1, the jerk is 1.7 times larger.
   static constexpr Scalar kSteps = Scalar(4);
 
   /// The stop, and the motion from which it starts.
@@ -144,14 +144,17 @@ class PairRows {
     const Scalar at = plane.at();
     const bool between = Scalar(0) < at && at < Scalar(1);
     const AllJoints nearest = plane.of_distance();
-    const Scalar deviation = bound.c0 + bound.c1 / kSteps + bound.c2 / (kSteps * kSteps);
+    const Scalar part = std::max(Scalar(1) / kSteps, motion.tick / motion.coasting_time);
+    const Scalar deviation = bound.c0 + part * (bound.c1 + part * bound.c2);
     for (int e = 0; e < (between ? 1 : 2); ++e) {
       const AllJoints gradient = between ? nearest : plane.gradient_of(e);
       const JointVector g = clearance.robot().drives().by_drive(gradient);
       const Scalar moved = motion.tick / Scalar(2) * plane.closing;  // Of the obstacle, until the middle of the tick.
       const Scalar gap = (between ? plane.distance : plane.gap(e)) - moved - clearance.margin();
-      const Scalar gap_slack = gap - kReserve - deviation - decrease_by_single_stops(motion, gradient);
-      const Scalar end_distance = plane.distance + nearest.dot(motion.stop.line);
+      const Scalar lag = plane.closing > Scalar(0) ? std::max(-gradient.dot(motion.stop.ramp_correction), Scalar(0)) : 0;
+      const Scalar gap_slack = gap - kReserve - deviation - decrease_by_single_stops(motion, gradient) - lag;
+      const Scalar end_distance =
+          plane.distance + nearest.dot(motion.stop.line) - plane.closing * motion.coasting_time;
       Candidate row{&pair, gap, gap_slack, end_distance, plane.closing, Scalar(0)};
       row.slack = closing_speed(clearance, row, row.gap_slack, motion) - plane.closing + g.dot(motion.qd);
       const Eigen::Index k = index_for(row.slack, rows.count);
@@ -168,7 +171,7 @@ class PairRows {
     clearance.place(end, end_);
     for (Eigen::Index k = 0; k < rows.count; ++k) {
       const Candidate& row = candidates_[k];
-      const Scalar second_order = row.end_distance - clearance.nearest_of(end_, *row.pair).distance;
+      const Scalar second_order = row.end_distance - distance_at_end(clearance, *row.pair, motion.coasting_time);
       const Scalar gap_slack = row.gap_slack - std::max(second_order, Scalar(0));
       const Scalar now = rows.g.col(k).dot(motion.qd);
       // Bound on −gᵀq̇ after the acceleration u of this tick is reduced to zero, where q̇ has changed by
@@ -177,6 +180,18 @@ class PairRows {
       rows.b(k) += kLevel == Level::kAcceleration ? now : (Scalar(1) - acting_ticks) * now;
       rows.g.col(k) *= kLevel == Level::kAcceleration ? -acting_ticks * motion.tick : -acting_ticks;
     }
+  }
+
+  /// Distance of a pair at the end of the stop, when a moving obstacle has moved for `time`.
+  [[nodiscard]] Scalar distance_at_end(const Clearance& clearance, const ShapePair& pair, Scalar time) const noexcept {
+    if (!pair.world || clearance.obstacles()[pair.second].velocity.isZero(Scalar(0))) {
+      return clearance.nearest_of(end_, pair).distance;
+    }
+    const auto& obstacle = clearance.obstacles()[pair.second];
+    Capsule<Scalar> relative = end_.bodies[pair.first];
+    relative.a -= time * obstacle.velocity;
+    relative.b -= time * obstacle.velocity;
+    return obstacle.nearest_to(relative).distance;
   }
 
   /// Largest permitted closing speed −ṡ of a pair [m/s].
