@@ -37,10 +37,11 @@ def pose_of(arm, q):
     return arm.forward(q)
 
 
+@pytest.mark.parametrize("dt", [DT, 4e-3, 2e-2])
 @pytest.mark.parametrize("stacked", [False, True])
 @pytest.mark.parametrize("level", SCHEMES)
 @pytest.mark.parametrize("name", ARMS)
-def test_walls_and_cones_hold(name, level, stacked):
+def test_walls_and_cones_hold(name, level, stacked, dt):
     """For targets beyond the walls, with one task and with levels of tasks, also of a link before the tip."""
     arm, limits, q0 = arm_of(name)
     rng = np.random.default_rng(ARMS.index(name))
@@ -55,10 +56,10 @@ def test_walls_and_cones_hold(name, level, stacked):
         fp.TaskBounds(fp.AxisTask(axis=(1, 0, 0), x=axis), upper=0.3),
     )
     how = {"stack": fp.Stack(fp.PositionTask(name="tip"), fp.PostureTask(k1=4, k2=4))} if stacked else {}
-    tracker = fp.Tracker(arm, SCHEMES[level](arm.dof, not stacked), q0, limits=limits, bounds=bounds, **how)
+    tracker = fp.Tracker(arm, SCHEMES[level](arm.dof, not stacked), q0, limits=limits, bounds=bounds, dt=dt, **how)
     met = 0
-    for k in range(4000):
-        if k % 500 == 0:
+    for k in range(round(4 / dt)):
+        if k % round(0.5 / dt) == 0:
             target = tip[:3, 3] + rng.uniform(-0.4, 0.4, 3) * (1, 1, name != "planar")
             target = target if stacked or name != "planar" else target[:2]
         tick = tracker.tick({"tip": target} if stacked else target)
@@ -70,7 +71,37 @@ def test_walls_and_cones_hold(name, level, stacked):
         assert np.arccos(min(axis @ now[:3, 0], 1.0)) <= 0.3 + 1e-7
         assert np.all(tick.q >= limits.lower - 1e-9)
         assert np.all(tick.q <= limits.upper + 1e-9)
-    assert met > 100
+    assert met > 0.1 / dt
+
+
+@pytest.mark.parametrize("dt", [DT, 4e-3, 2e-2])
+@pytest.mark.parametrize("level", SCHEMES)
+def test_walls_and_cones_hold_while_an_obstacle_presses_the_arm(level, dt):
+    """A plate that moves down presses the tip of an arm at rest toward a wall, and its axis toward a cone."""
+    shapes = fp.Clearance.preset("panda")
+    for seed in range(4):
+        arm, _, _ = arm_of("panda")
+        q0 = np.array([0, -0.2, 0, -2.4, 0, 2.2, 0.785]) + np.random.default_rng(seed).uniform(-0.15, 0.15, 7)
+        tip = arm.forward(q0)
+
+        def plate(below, tip=tip):
+            pose = np.eye(4)
+            pose[:3, 3] = tip[:3, 3] + [0, 0, 0.35 - below]
+            return fp.Cuboid(pose, half=[0.12, 0.12, 0.01], name="plate")
+
+        bounds = (
+            fp.TaskBounds(fp.PositionTask(rows=("z",)), lower=tip[2, 3] - 0.02),
+            fp.TaskBounds(fp.AxisTask(x=tip[:3, 2]), upper=0.02),
+        )
+        clearance = fp.Clearance(shapes.capsules, [plate(0)], margin=0.01, allowed=shapes.allowed)
+        tracker = fp.Tracker(
+            arm, SCHEMES[level](7, 1), q0, clearance=clearance, bounds=bounds[seed % 2 :][:1], dt=dt, task="pose"
+        )
+        for k in range(round(2 / dt)):
+            tracker.move("plate", plate(0.3 * dt * k), velocity=[0, 0, -0.3])
+            now = arm.forward(tracker.tick(tip).q)
+            assert seed % 2 == 1 or now[2, 3] >= tip[2, 3] - 0.02 - 1e-9
+            assert seed % 2 == 0 or np.arccos(min(tip[:3, 2] @ now[:3, 2], 1.0)) <= 0.02 + 1e-7
 
 
 def test_a_run_keeps_its_bounds():

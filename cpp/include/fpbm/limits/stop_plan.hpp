@@ -83,7 +83,7 @@ class StopPlan {
       if (!stops_alone(i)) {
         result.line(i) = h * ticks * velocity_(i);
         result.ramp_correction(i) = -h * h * (tick_deficit + ramp_deficit()) * last_(i);
-        result.start_velocity(i) = before.qd(i);
+        result.start_velocity(i) = kLevel == Level::kVelocity ? start.qd(i) : before.qd(i);
         continue;
       }
       const auto [low, high] = single_stop_displacement(limits, i, start.qd(i));

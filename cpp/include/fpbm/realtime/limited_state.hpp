@@ -165,7 +165,7 @@ class LimitedState {
   /// the step (docs/limits.md, Bounds on jerk). Velocity level: the tick has the mean velocity of the step.
   void make_admissible(JointState& next) const noexcept {
     if constexpr (kSecondOrder) {
-      if (limits().bounds_jerk() || !limits().admits_differences(tick_.joints, next)) {
+      if (!guard_.empty() || limits().bounds_jerk() || !limits().admits_differences(tick_.joints, next)) {
         next.q = tick_.motion.moved(tick_.joints, tick_.acceleration_to(next));
       }
     } else {
