@@ -77,12 +77,12 @@ class JointLimits(Data):
         """The fields that are not missing, by name: numbers or arrays of shape (n,)."""
         return {name: values for name, values in self._values().items() if values is not None}
 
-    def replace(self, **fields: ArrayLike | None) -> JointLimits:
+    def replace(self, **fields: Any) -> JointLimits:
         """These limits with other fields: arm.limits.replace(acceleration=10)."""
         return replace(self, **fields)
 
     def of(self, arm: CoreModel) -> JointLimits:
-        """These limits for the joints of an arm or a robot: the arm's fields for missing fields, and arrays for numbers.
+        """These limits for an arm or a robot: with the arm's fields for missing fields, and arrays for numbers.
 
         Raises ParameterError if the length of an array is not arm.dof.
         """
@@ -262,6 +262,11 @@ class SerialArm(Arm):
         return cls([Joint(**joint) for joint in joints], tip)
 
 
+def limits_of(arm: CoreModel, limits: JointLimits | None) -> JointLimits | None:
+    """Limits without missing fields; None if no limits are given."""
+    return limits.of(arm) if isinstance(limits, JointLimits) else limits
+
+
 def limited(joints: Sequence[Joint], limits: JointLimits | None) -> list[Joint]:
     """The joints with the given bounds, one per joint with a drive; mimic joints lose their bounds of these kinds."""
     if limits is None:
@@ -275,7 +280,7 @@ def limited(joints: Sequence[Joint], limits: JointLimits | None) -> list[Joint]:
     changed = []
     drive = 0
     for joint in joints:
-        bounds = {name: NO_BOUNDS[name] for name in columns}
+        bounds: dict[str, Any] = {name: NO_BOUNDS[name] for name in columns}
         if joint.mimic is None:
             bounds = {name: float(values[drive]) for name, values in columns.items()}
             drive += 1

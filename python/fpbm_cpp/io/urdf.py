@@ -305,7 +305,7 @@ def chain_joint(joint: UrdfJoint, placement: Array, own: Collection[str] = (), f
     """
     require_axis(joint)
     given = {name: value for name, value in joint.limit.items() if value != 0.0 or name in ("lower", "upper")}
-    limit = {**NO_BOUNDS, "lower": 0.0, "upper": 0.0, **given}  # Defaults of the URDF format.
+    limit: dict[str, Any] = {**NO_BOUNDS, "lower": 0.0, "upper": 0.0, **given}  # Defaults of the URDF format.
     if joint.type == "continuous":
         limit |= {"lower": -inf, "upper": inf}
     if not {"velocity_offset", "deceleration"} & set(own):

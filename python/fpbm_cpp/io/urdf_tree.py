@@ -11,12 +11,25 @@ from typing import Any
 import numpy as np
 
 from .._core import MAX_DOF
-from .._types import Array
 from ..arms import Joint, JointLimits, limited
 from ..errors import ParameterError, not_one_of, wrong
 from ..robots import NamedFrame, TreeJoint
-from .urdf import FREE, Places, Tree, chain_joint, coupled_joints, follows_of, frame_at, or_else, own_bounds, pose
-from .urdf import listed, step_of, tree_of, without_range
+from .urdf import (
+    FREE,
+    Places,
+    Tree,
+    chain_joint,
+    coupled_joints,
+    follows_of,
+    frame_at,
+    listed,
+    or_else,
+    own_bounds,
+    pose,
+    step_of,
+    tree_of,
+    without_range,
+)
 from .urdf_file import Mass, UrdfJoint, read_robot_with_masses
 
 TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
@@ -173,7 +186,9 @@ def _robot(
                 number, frame = len(joints), frame_at()
         places[joint.child] = (number, frame)
     if not joints:
-        remedy = f"{FREE}, or if the base moves, give base='planar'" if fixed else "if the base moves, give base='planar'"
+        remedy = (
+            f"{FREE}, or if the base moves, give base='planar'" if fixed else "if the base moves, give base='planar'"
+        )
         raise ValueError(f"no joints move: must be 1 to {MAX_DOF}: {remedy}")
     if len(joints) > MAX_DOF:
         raise ValueError(f"{len(joints)} joints move: must be 1 to {MAX_DOF}; fix the other joints by locked= or tips=")

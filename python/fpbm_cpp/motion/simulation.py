@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .._core import failed, rollout
-from ..arms import Arm, JointLimits
+from ..arms import Arm, JointLimits, limits_of
 from ..clearance import Clearance
 from ..errors import ResolutionError, not_one_of, wrong
 from ..paths import Path
@@ -139,7 +139,7 @@ def track(
     options = motion_options(arm, dt, hold, qd0)
     name, kind, followed, others = task_and_paths(path, task, stack)
     limited = LimitOptions(
-        limits,
+        limits_of(arm, limits),
         error_bound,
         integral_gain,
         integral_bound,
