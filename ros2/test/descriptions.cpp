@@ -157,7 +157,7 @@ void few_joints() {
   const double turned = (tip.R.col(2) - target.R.col(2)).norm();
   check(turned < 1e-6, "so101: error of the z axis [rad]", turned);
 
-  target.p(2) += 2.0;  // Unreachable: the arm stretches, and comes to rest.
+  target.p(2) += 2.0;  // Unreachable: the arm stops at the workspace boundary.
   pose.pose.position.z = target.p(2);
   controller.send("~/target_pose", pose, 8000);
   const std::vector<double> before = controller.q;

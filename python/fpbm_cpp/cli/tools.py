@@ -194,7 +194,7 @@ export_header.params += limit_options()
 
 
 def _changed(limits: Mapping[str, Any]) -> str:
-    """Limits that are not those of the source, for a comment."""
+    """Changed limits, for a comment."""
     return "".join(f", --limit-{key.replace('_', '-')} {_text(value)}" for key, value in limits.items())
 
 
