@@ -275,7 +275,7 @@ def limited(joints: Sequence[Joint], limits: JointLimits | None) -> list[Joint]:
     columns = {}
     for name, values in limits.given.items():
         if isinstance(values, np.ndarray):
-            require_length(f"limits.{name}", values, dof)
+            require_length(name, values, dof)
         columns[name] = np.broadcast_to(values, dof)
     changed = []
     drive = 0

@@ -22,6 +22,7 @@ from ..job import Motion, prepare
 from ..job.sections import Table
 from ..motion.lanes import LANES
 from ..motion.sweeping import sweep
+from ..parameter import parameters
 from ..robots import Robot
 from ..schemes import SCHEMES
 from ..worst import measure
@@ -195,7 +196,8 @@ export_header.params += limit_options()
 
 def _changed(limits: Mapping[str, Any]) -> str:
     """Changed limits, for a comment."""
-    return "".join(f", --limit-{key.replace('_', '-')} {_text(value)}" for key, value in limits.items())
+    said = ((key, limits[key]) for key in parameters(JointLimits) if key in limits)
+    return "".join(f", --limit-{key.replace('_', '-')} {_text(value)}" for key, value in said)
 
 
 def _text(value: Any) -> str:

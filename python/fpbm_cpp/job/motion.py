@@ -45,7 +45,8 @@ from .sections import (
 )
 
 # Ready postures with the hand down [rad]: the maker's for Franka; 30° -90° 60° for the iiwa 14; the maker's home for
-# Kinova; right angles for UR.
+# Kinova; right angles for UR; -20° 40° 60° for the xArm 7; -20° 40° 70° for the SO-101. The posture of the Z1 is
+# "forward" of Unitree's SDK, with the hand to the front.
 READY = {
     "panda": [0.0, -0.7854, 0.0, -2.3562, 0.0, 1.5708, 0.7854],
     "fr3": [0.0, -0.7854, 0.0, -2.3562, 0.0, 1.5708, 0.7854],
@@ -53,6 +54,9 @@ READY = {
     "gen3": [0.0, 0.2618, 3.1416, -2.2689, 0.0, 0.9599, 1.5708],
     "ur5e": [0.0, -1.5708, 1.5708, -1.5708, -1.5708, 0.0],
     "ur10e": [0.0, -1.5708, 1.5708, -1.5708, -1.5708, 0.0],
+    "xarm7": [0.0, -0.3491, 0.0, 0.6981, 0.0, 1.0472, 0.0],
+    "so101": [0.0, -0.3491, 0.6981, 1.2217, 0.0],
+    "z1": [0.0, 1.5, -1.0, -0.54, 0.0, 0.0],
 }
 READY["two_pandas"] = 2 * READY["panda"]
 
