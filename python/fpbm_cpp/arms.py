@@ -24,8 +24,7 @@ __all__ = ["Arm", "Joint", "JointLimits", "PlanarArm", "SerialArm"]
 NO_BOUNDS = {"lower": -inf, "upper": inf, "velocity": inf, "acceleration": inf, "jerk": inf}
 NO_BOUNDS |= {"velocity_offset": 0.0, "deceleration": inf}
 IDENTITY = tuple(map(tuple, np.eye(4).tolist()))
-BOUND = Parameter(shape="(n,)", infinite=True)
-BOUNDS = Parameter(shape="(n,) or ()", infinite=True)
+BOUND = Parameter(shape="(n,) or ()", infinite=True)
 FRAME = Parameter(shape="(4, 4)", unit="m")
 
 
@@ -42,22 +41,22 @@ class JointLimits(Data):
 
     kind: ClassVar[str] = "limits"
     _: KW_ONLY
-    lower: FilledArrayField = parameter("Lower bounds of the positions.", BOUNDS, default=None, unit="rad")
-    upper: FilledArrayField = parameter("Upper bounds of the positions.", BOUNDS, default=None, unit="rad")
+    lower: FilledArrayField = parameter("Lower bounds of the positions.", BOUND, default=None, unit="rad")
+    upper: FilledArrayField = parameter("Upper bounds of the positions.", BOUND, default=None, unit="rad")
     velocity: FilledArrayField = parameter(
-        "Largest velocities, in both directions.", BOUNDS, default=None, unit="rad/s"
+        "Largest velocities, in both directions.", BOUND, default=None, unit="rad/s"
     )
     acceleration: FilledArrayField = parameter(
-        "Largest accelerations, in both directions.", BOUNDS, default=None, unit="rad/s^2"
+        "Largest accelerations, in both directions.", BOUND, default=None, unit="rad/s^2"
     )
-    jerk: FilledArrayField = parameter("Largest jerks, in both directions.", BOUNDS, default=None, unit="rad/s^3")
+    jerk: FilledArrayField = parameter("Largest jerks, in both directions.", BOUND, default=None, unit="rad/s^3")
     velocity_offset: FilledArrayField = parameter(
         "Toward an end of the range at distance d, the velocity is at most -velocity_offset + sqrt(2 deceleration d).",
-        BOUNDS,
+        BOUND,
         default=None,
         unit="rad/s",
     )
-    deceleration: FilledArrayField = parameter("See velocity_offset.", BOUNDS, default=None, unit="rad/s^2")
+    deceleration: FilledArrayField = parameter("See velocity_offset.", BOUND, default=None, unit="rad/s^2")
 
     def _finish(self) -> None:
         given = self.given
@@ -216,7 +215,8 @@ class SerialArm(Arm):
         convention : str
             'classic' or 'modified'.
         types, lower, upper, velocity, acceleration, jerk, names : array_like, shape (n,), optional
-            As in Joint: 'revolute' (default), 'continuous' or 'prismatic'; bounds of the motion; names.
+            As in Joint: 'revolute' (default), 'continuous' or 'prismatic'; bounds of the motion, one number for all
+            joints or an array; names.
         base, tip : array_like, shape (4, 4), optional
             Frame 0 in the base frame, and the frame of the tip in frame n.
         """
@@ -224,6 +224,7 @@ class SerialArm(Arm):
         joints, end = dh(rows, convention, ["revolute"] * len(rows) if types is None else list(types))
         bounds = {"lower": lower, "upper": upper, "velocity": velocity, "acceleration": acceleration, "jerk": jerk}
         columns = {name: replace(BOUND, name=name, default=None).check(values) for name, values in bounds.items()}
+        columns = {name: [v] * len(rows) if isinstance(v, float) else v for name, v in columns.items()}
         for name, values in {**columns, "names": names}.items():
             if values is not None:
                 require_length(name, values, len(rows))
