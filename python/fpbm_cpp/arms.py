@@ -43,9 +43,7 @@ class JointLimits(Data):
     _: KW_ONLY
     lower: FilledArrayField = parameter("Lower bounds of the positions.", BOUND, default=None, unit="rad")
     upper: FilledArrayField = parameter("Upper bounds of the positions.", BOUND, default=None, unit="rad")
-    velocity: FilledArrayField = parameter(
-        "Largest velocities, in both directions.", BOUND, default=None, unit="rad/s"
-    )
+    velocity: FilledArrayField = parameter("Largest velocities, in both directions.", BOUND, default=None, unit="rad/s")
     acceleration: FilledArrayField = parameter(
         "Largest accelerations, in both directions.", BOUND, default=None, unit="rad/s^2"
     )
