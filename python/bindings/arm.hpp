@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -22,10 +23,14 @@ struct AnyKinematics {
 /// Throws std::invalid_argument if a task in Space has more rows than the arm has joints.
 template <typename Space>
 void require_enough_joints(Eigen::Index dof) {
-  if (dof < Space::kRows) {
-    validation::reject("task", ": has " + std::to_string(Space::kRows) + " rows, and the arm has " +
-                                   std::to_string(dof) + " joints: must not have more rows than joints");
+  if (dof >= Space::kRows) return;
+  const char* remedy = "give a stack with fewer rows, for example fp.PositionTask(rows=('x', 'z'))";
+  if constexpr (std::is_same_v<Space, PlanarPose>) remedy = "give task='position'";
+  if constexpr (std::is_same_v<Space, Pose>) {
+    remedy = "give task='position' or stack=fp.Stack(fp.PositionTask(), fp.AxisTask())";
   }
+  validation::reject("task", ": has " + std::to_string(Space::kRows) + " rows, and the arm has " + std::to_string(dof) +
+                                 " joints: must not have more rows than joints: " + remedy);
 }
 
 /// A planar arm or an arm in space.

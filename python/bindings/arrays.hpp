@@ -201,12 +201,15 @@ typename Space::template Point<double> point(const ArrayLike& argument, const ch
 }
 
 /// Limits from any object with lower, upper, velocity and acceleration, and optionally jerk, velocity_offset and
-/// deceleration. Each attribute has one number per joint, not NaN.
+/// deceleration. Each attribute has one number per joint, not NaN. Throws std::invalid_argument.
 inline JointLimits<Eigen::Dynamic> joint_limits(const py::object& limits) {
   for (const char* name : {"lower", "upper", "velocity", "acceleration"}) {
     if (!py::hasattr(limits, name)) reject_type(limits, "limits", "JointLimits");
   }
   const auto bound = [&](const char* name) {
+    if (limits.attr(name).is_none()) {
+      validation::reject(validation::Argument("limits.") + name, " is missing: give limits.of(arm)");
+    }
     const Vector<Eigen::Dynamic> values = joint_vector(ArrayLike(py::object(limits.attr(name))), name);
     for (Eigen::Index i = 0; i < values.size(); ++i) {
       if (std::isnan(values(i))) validation::fail(validation::element(name, i), values(i), "a number");
@@ -220,6 +223,11 @@ inline JointLimits<Eigen::Dynamic> joint_limits(const py::object& limits) {
   if (has("deceleration")) result.deceleration = bound("deceleration");
   return result;
 }
+
+struct Model;
+
+/// The limits of a motion of a model: the given limits, which may lack fields, or the limits of the model.
+JointLimits<Eigen::Dynamic> limits_of(const Model& model, const py::object& given);
 
 /// A vector, a matrix or a point of a task space in Python.
 template <typename Derived>

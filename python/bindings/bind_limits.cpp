@@ -95,6 +95,12 @@ class PyLimiter {
 
 }  // namespace
 
+JointLimits<kDynamic> limits_of(const Model& model, const py::object& given) {
+  if (given.is_none()) return model.limits();
+  if (!py::hasattr(given, "of")) return joint_limits(given);
+  return joint_limits(given.attr("of")(py::cast(&model, py::return_value_policy::reference)));
+}
+
 void bind_limits(py::module_& m) {
   const auto none = py::none();
   py::class_<PySaturatedMotion>(m, "SaturatedMotion", "A motion of one tick within limits.")
@@ -113,7 +119,8 @@ the task is scaled without a change of direction.
 Parameters
 ----------
 limits : JointLimits
-    Bounds of the joints. A bounded joint needs a bound on acceleration, except at velocity level.
+    Bounds of the joints, none missing: limits.of(arm) completes limits. A bounded joint needs a bound on acceleration,
+    except at velocity level.
 dt : float
     Length of a tick [s].
 level : str

@@ -116,7 +116,7 @@ class PyTracker {
     State<kDynamic> start{joint_vector(q0, "q0", dof_), JointVector::Zero(dof_)};
     if (qd0) start.qd = joint_vector(*qd0, "qd0", dof_);
     const JointVector before = qdd0 ? joint_vector(*qdd0, "qdd0", dof_) : JointVector::Zero(dof_);
-    const JointLimits<kDynamic> bounds = limits.is_none() ? model.limits() : joint_limits(limits);
+    const JointLimits<kDynamic> bounds = limits_of(model, limits);
     Clearance<kDynamic> shapes = clearance_of(model, clearance);
     add_bounds(shapes, model, task_bounds);
     if (!stack.is_none()) {
@@ -309,7 +309,8 @@ stack : Stack, optional
 dt : float
     Length of a tick [s].
 limits : JointLimits, optional
-    Default: the limits of the arm. A bounded joint needs a bound on acceleration, except at velocity level.
+    Changes of the limits of the arm, or all limits. A bounded joint needs a bound on acceleration, except at velocity
+    level.
 error_bound : float
     Largest tip error that the feedback uses: of the position in arm lengths (from the first joint to the tip, along the
     links), of the orientation [rad].

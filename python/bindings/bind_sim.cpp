@@ -40,7 +40,7 @@ std::optional<LimitOptions> limit_options_of(const py::object& given, const Mode
   const py::object limits = given.attr("limits");
   const py::object clearance = given.attr("clearance");
   LimitOptions limit_options{
-      limits.is_none() ? model.limits() : joint_limits(limits),
+      limits_of(model, limits),
       {1e-3, number("error_bound"), number("integral_gain"), number("integral_bound"), number("stall_time"),
        SingularDamping<>(number("singular_radius"), number("singular_brake")), number("null_damping")},
       clearance_of(model, clearance),

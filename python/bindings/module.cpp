@@ -1,8 +1,21 @@
+#include <algorithm>
+#include <string>
+
 #include "bindings.hpp"
 #include "fpbm/clearance/too_close.hpp"
 #include "fpbm/core/validation.hpp"
 
 namespace {
+
+/// A message whose remedy is in the notation of Python.
+std::string in_python(std::string message) {
+  const std::string remedy = ": give a bound";
+  const std::size_t at = message.size() - std::min(remedy.size(), message.size());
+  if (message.find("limits.acceleration[") != std::string::npos && message.compare(at, remedy.size(), remedy) == 0) {
+    message.replace(at, remedy.size(), ": give limits=fp.JointLimits(acceleration=10), in rad/s^2 or m/s^2");
+  }
+  return message;
+}
 
 /// Translates a ParameterError to the ParameterError of the package, a subclass of ValueError.
 void translate(std::exception_ptr thrown) {
@@ -18,7 +31,7 @@ void translate(std::exception_ptr thrown) {
     const py::object type = py::module_::import("fpbm_cpp.errors").attr("ParameterError");
     const py::object index = error.index() < 0 ? py::object(py::none()) : py::int_(error.index());
     const py::object value = std::isnan(error.value()) ? py::object(py::none()) : py::float_(error.value());
-    py::set_error(type, type(error.name(), index, value, error.what()));
+    py::set_error(type, type(error.name(), index, value, in_python(error.what())));
   }
 }
 

@@ -27,7 +27,7 @@ from ._core import (
 from .arms import *
 from .capsule import Capsule
 from .clearance import Clearance
-from .errors import ParameterError, ResolutionError, SweepInterrupted, TuneInterrupted
+from .errors import ParameterError, ResolutionError, SweepInterrupted, TuneInterrupted, UrdfWarning
 from .io.run_file import load
 from .motion.lanes import LANES
 from .motion.run import Run, RunStatus
@@ -47,6 +47,6 @@ __all__ += ["servo", "view"]
 __all__ += ["Capsule", "Clearance", "Cuboid", "HalfSpace", "Nearest"]
 __all__ += ["Kinematics", "Limiter", "PathFollower", "SaturatedMotion", "Status", "TargetFilter", "Tick"]
 __all__ += ["SaturatedLevels", "TaskBounds", "Tracker", "failed", "saturate"]
-__all__ += ["MAX_DOF", "ParameterError", "ResolutionError", "SweepInterrupted", "TuneInterrupted"]
+__all__ += ["MAX_DOF", "ParameterError", "ResolutionError", "SweepInterrupted", "TuneInterrupted", "UrdfWarning"]
 __all__ += ["__version__", "rotation", "rotation_vector"]
 __all__ += arms.__all__ + paths.__all__ + robots.__all__ + schemes.__all__ + tasks.__all__

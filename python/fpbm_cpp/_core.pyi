@@ -375,7 +375,8 @@ class Limiter:
     Parameters
     ----------
     limits : JointLimits
-        Bounds of the joints. A bounded joint needs a bound on acceleration, except at velocity level.
+        Bounds of the joints, none missing: limits.of(arm) completes limits. A bounded joint needs a bound on acceleration,
+        except at velocity level.
     dt : float
         Length of a tick [s].
     level : str
@@ -636,7 +637,8 @@ class Tracker:
     dt : float
         Length of a tick [s].
     limits : JointLimits, optional
-        Default: the limits of the arm. A bounded joint needs a bound on acceleration, except at velocity level.
+        Changes of the limits of the arm, or all limits. A bounded joint needs a bound on acceleration, except at velocity
+        level.
     error_bound : float
         Largest tip error that the feedback uses: of the position in arm lengths (from the first joint to the tip, along the
         links), of the orientation [rad].
@@ -971,7 +973,7 @@ def waypoints(
 def with_rotation(path: Path, rotation: numpy.typing.ArrayLike, time_law: str) -> Path: ...
 
 MAX_DOF: int = 64
-PRESETS: tuple[str, ...] = ("panda", "fr3", "iiwa14", "gen3", "ur5e", "ur10e")
+PRESETS: tuple[str, ...] = ("panda", "fr3", "iiwa14", "gen3", "ur5e", "ur10e", "xarm7", "so101", "openarm", "z1")
 ROBOT_PRESETS: tuple[str, ...] = ("two_pandas", "g1_upper_body")
 TIME_LAWS: tuple[str, ...] = ("sin_squared", "quintic", "constant_speed")
 __version__: str = "0.1.0"

@@ -14,14 +14,17 @@ from numpy.typing import ArrayLike
 
 from ._core import PRESETS, dh, preset
 from ._core import Arm as CoreArm
+from ._core import Model as CoreModel
 from ._types import ArrayField, FilledArrayField
 from .errors import not_one_of, require, wrong
 from .parameter import POSITIVE, Data, Parameter, data, parameter
 
 __all__ = ["Arm", "Joint", "JointLimits", "PlanarArm", "SerialArm"]
 
+NO_BOUNDS = {"lower": -inf, "upper": inf, "velocity": inf, "acceleration": inf, "jerk": inf}
+NO_BOUNDS |= {"velocity_offset": 0.0, "deceleration": inf}
 IDENTITY = tuple(map(tuple, np.eye(4).tolist()))
-BOUND = Parameter(shape="(n,)", infinite=True)
+BOUND = Parameter(shape="(n,) or ()", infinite=True)
 FRAME = Parameter(shape="(4, 4)", unit="m")
 
 
@@ -29,15 +32,21 @@ FRAME = Parameter(shape="(4, 4)", unit="m")
 class JointLimits(Data):
     """Bounds of the motion of each joint; infinity means no bound. For a prismatic joint, read m instead of rad.
 
+    A number applies to all joints. If lower, upper, velocity or acceleration is missing, the limits change the limits
+    of an arm: each missing field is the field of the arm. Otherwise, a missing jerk means no bound, and a missing
+    velocity_offset or deceleration no braking envelope.
+
     Raises ParameterError if a bound is not a number, or the lengths of the arrays differ.
     """
 
     kind: ClassVar[str] = "limits"
     _: KW_ONLY
-    lower: ArrayField = parameter("Lower bounds of the positions.", BOUND, unit="rad")
-    upper: ArrayField = parameter("Upper bounds of the positions.", BOUND, unit="rad")
-    velocity: ArrayField = parameter("Largest velocities, in both directions.", BOUND, unit="rad/s")
-    acceleration: ArrayField = parameter("Largest accelerations, in both directions.", BOUND, unit="rad/s^2")
+    lower: FilledArrayField = parameter("Lower bounds of the positions.", BOUND, default=None, unit="rad")
+    upper: FilledArrayField = parameter("Upper bounds of the positions.", BOUND, default=None, unit="rad")
+    velocity: FilledArrayField = parameter("Largest velocities, in both directions.", BOUND, default=None, unit="rad/s")
+    acceleration: FilledArrayField = parameter(
+        "Largest accelerations, in both directions.", BOUND, default=None, unit="rad/s^2"
+    )
     jerk: FilledArrayField = parameter("Largest jerks, in both directions.", BOUND, default=None, unit="rad/s^3")
     velocity_offset: FilledArrayField = parameter(
         "Toward an end of the range at distance d, the velocity is at most -velocity_offset + sqrt(2 deceleration d).",
@@ -48,14 +57,37 @@ class JointLimits(Data):
     deceleration: FilledArrayField = parameter("See velocity_offset.", BOUND, default=None, unit="rad/s^2")
 
     def _finish(self) -> None:
-        dof = len(self.lower)
-        for name, missing in (("jerk", inf), ("velocity_offset", 0.0), ("deceleration", inf)):
-            if getattr(self, name) is None:
-                values = np.full(dof, missing)
+        given = self.given
+        sizes = [len(values) for values in given.values() if isinstance(values, np.ndarray)]
+        if given.keys() >= {"lower", "upper", "velocity", "acceleration"}:
+            given = {**NO_BOUNDS, **given}
+        for name, values in given.items():
+            if sizes and not isinstance(values, np.ndarray):
+                values = np.full(sizes[0], values)
                 values.flags.writeable = False
-                object.__setattr__(self, name, values)
-        for name in ("upper", "velocity", "acceleration", "jerk", "velocity_offset", "deceleration"):
-            require_length(name, getattr(self, name), dof)
+            object.__setattr__(self, name, values)
+            if sizes:
+                require_length(name, values, sizes[0])
+
+    @property
+    def given(self) -> dict[str, Any]:
+        """The fields that are not missing, by name: numbers or arrays of shape (n,)."""
+        return {name: values for name, values in self._values().items() if values is not None}
+
+    def replace(self, **fields: Any) -> JointLimits:
+        """These limits with other fields: arm.limits.replace(acceleration=10)."""
+        return replace(self, **fields)
+
+    def of(self, arm: CoreModel) -> JointLimits:
+        """These limits for an arm or a robot: with the arm's fields for missing fields, and arrays for numbers.
+
+        Raises ParameterError if the length of an array is not arm.dof.
+        """
+        for name, values in self.given.items():
+            if isinstance(values, np.ndarray):
+                require_length(name, values, arm.dof)
+        own = {name: np.asarray(values) for name, values in arm.bounds().items()}
+        return JointLimits(**{**own, **self.given})
 
 
 @data
@@ -180,7 +212,8 @@ class SerialArm(Arm):
         convention : str
             'classic' or 'modified'.
         types, lower, upper, velocity, acceleration, jerk, names : array_like, shape (n,), optional
-            As in Joint: 'revolute' (default), 'continuous' or 'prismatic'; bounds of the motion; names.
+            As in Joint: 'revolute' (default), 'continuous' or 'prismatic'; bounds of the motion, one number for all
+            joints or an array; names.
         base, tip : array_like, shape (4, 4), optional
             Frame 0 in the base frame, and the frame of the tip in frame n.
         """
@@ -188,6 +221,7 @@ class SerialArm(Arm):
         joints, end = dh(rows, convention, ["revolute"] * len(rows) if types is None else list(types))
         bounds = {"lower": lower, "upper": upper, "velocity": velocity, "acceleration": acceleration, "jerk": jerk}
         columns = {name: replace(BOUND, name=name, default=None).check(values) for name, values in bounds.items()}
+        columns = {name: [v] * len(rows) if isinstance(v, float) else v for name, v in columns.items()}
         for name, values in {**columns, "names": names}.items():
             if values is not None:
                 require_length(name, values, len(rows))
@@ -198,19 +232,24 @@ class SerialArm(Arm):
         return cls([Joint(**joint) for joint in joints], end if tip is None else end @ _frame("tip", tip))
 
     @classmethod
-    def from_urdf(cls, path: str | os.PathLike[str], tip: str, base: str | None = None) -> SerialArm:
+    def from_urdf(
+        cls, path: str | os.PathLike[str], tip: str, base: str | None = None, *, limits: JointLimits | None = None
+    ) -> SerialArm:
         """Arm between two links of a URDF file: base (default: the root) and tip. Expand xacro first.
 
-        Fixed joints become part of the frames. Bounds, names and mimic joints are kept. If the leader of a mimic joint
-        is not a moving joint between base and tip, a UserWarning is issued, and the mimic joint is fixed at its
-        position for the leader at zero.
+        Fixed joints become part of the frames. Bounds, names and mimic joints are kept. A velocity, acceleration or
+        jerk that is 0 or missing is not bounded. limits replaces bounds of the file, before the bounds are checked.
+
+        A UrdfWarning is issued if lower = upper: the joint is fixed; if the range of a mimic joint leaves no range for
+        its leader: the range of the mimic joint is ignored; and if the leader of a mimic joint is not a moving joint
+        between base and tip: the mimic joint is fixed at its position for the leader at zero.
 
         Raises ValueError if the file is not a valid URDF or has no chain between the links, OSError if the file cannot
         be read.
         """
         from .io.urdf import read_urdf
 
-        return cls(*read_urdf(path, tip, base))
+        return cls(*read_urdf(path, tip, base, limits))
 
     @classmethod
     def preset(cls, name: str) -> SerialArm:
@@ -219,6 +258,34 @@ class SerialArm(Arm):
             raise not_one_of("name", name, PRESETS)
         joints, tip = preset(name)
         return cls([Joint(**joint) for joint in joints], tip)
+
+
+def limits_of(arm: CoreModel, limits: JointLimits | None) -> JointLimits | None:
+    """Limits without missing fields; None if no limits are given."""
+    return limits.of(arm) if isinstance(limits, JointLimits) else limits
+
+
+def limited(joints: Sequence[Joint], limits: JointLimits | None) -> list[Joint]:
+    """The joints with the given bounds, one per joint with a drive; mimic joints lose their bounds of these kinds."""
+    if limits is None:
+        return list(joints)
+    dof = sum(joint.mimic is None for joint in joints)
+    columns = {}
+    for name, values in limits.given.items():
+        if isinstance(values, np.ndarray):
+            require_length(name, values, dof)
+        columns[name] = np.broadcast_to(values, dof)
+    changed = []
+    drive = 0
+    for joint in joints:
+        bounds: dict[str, Any] = {name: NO_BOUNDS[name] for name in columns}
+        if joint.mimic is None:
+            bounds = {name: float(values[drive]) for name, values in columns.items()}
+            drive += 1
+        ranged = np.isfinite([bounds.get(name, inf) for name in ("lower", "upper")]).any()
+        kind = "revolute" if joint.type == "continuous" and ranged else joint.type
+        changed.append(replace(joint, type=kind, **bounds))
+    return changed
 
 
 def require_length(name: str, values: Sized, dof: int) -> None:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from ._core import Clearance as CoreClearance
 from ._core import Nearest, preset_capsules
 from ._types import Array
-from .arms import IDENTITY, Arm, Joint, SerialArm
+from .arms import IDENTITY, Arm, Joint, JointLimits, SerialArm
 from .capsule import Capsule
 from .errors import ParameterError, require, suggestion, wrong
 from .obstacle import OBSTACLES, Obstacle
@@ -146,12 +146,13 @@ class Clearance(Data):
         allowed: Sequence[tuple[str, str]] = (),
         per_link: int = 2,
         postures: ArrayLike | None = None,
+        limits: JointLimits | None = None,
     ) -> Clearance:
         """Clearance of the robot in a URDF file, with capsules that contain the collision geometry of the file.
 
-        The robot is SerialArm.from_urdf(path, tip, base). Without tip, the robot is Robot.from_urdf(path, base=base,
-        locked=locked, tips=tips). Give the same arguments to both functions. Joints that do not move are at the
-        positions at which the robot fixes them.
+        The robot is SerialArm.from_urdf(path, tip, base, limits=limits). Without tip, the robot is Robot.from_urdf(
+        path, base=base, locked=locked, tips=tips, limits=limits). Give the same arguments to both functions. Joints
+        that do not move are at the positions at which the robot fixes them.
 
         Each link gets one capsule, or up to per_link capsules if their volume is smaller. Unless per_link is 1, a link
         gets one more capsule if its capsules would often be closer to the capsules of another link than the margin
@@ -169,21 +170,25 @@ class Clearance(Data):
         """
         from .io.capsules import capsules_of
         from .io.srdf import read_disabled_pairs
+        from .io.urdf import read_places
+        from .io.urdf_tree import read_tree
 
         cls([], obstacles, margin=margin)  # Check these arguments before the slow fit.
         pairs = [] if srdf is None else read_disabled_pairs(srdf)
         if tips is not None:
             tips = [tips] if isinstance(tips, str) else list(tips)
         if tip is None:
-            joints = [each.joint for each in Robot.from_urdf(path, base=base, locked=locked, tips=tips).joints]
+            robot = Robot(**read_tree(path, base=base, locked=locked, tips=tips, limits=limits))
+            joints = [each.joint for each in robot.joints]
         else:
-            joints = list(SerialArm.from_urdf(path, tip, base).joints)
+            joints = list(SerialArm(*read_places(path, tip, base, limits)[:2]).joints)
         capsules = capsules_of(
             path,
             tip,
             base,
             locked=locked,
             tips=tips,
+            limits=limits,
             per_link=per_link,
             margin=margin,
             required=_postures(joints, postures, srdf if per_link != 1 else None),

@@ -74,6 +74,10 @@ def extra(library: str, user: str, name: str) -> Any:
         raise ImportError(f'{user} needs {library.partition(".")[0]}: pip install "fpbm_cpp[{name}]"') from None
 
 
+class UrdfWarning(UserWarning):
+    """A URDF file is read, but a joint is not as the file says; the message has the consequence."""
+
+
 class ResolutionError(RuntimeError):
     """The motion cannot be resolved: singular posture, unreachable target, or a number that is not finite.
 

@@ -139,11 +139,12 @@ class Robot(Data, CoreRobot):
         base: str | None = None,
         locked: Mapping[str, float] | None = None,
         tips: Iterable[str] | None = None,
+        limits: JointLimits | None = None,
     ) -> Robot:
         """Robot of all joints of a URDF file. Expand xacro first.
 
         Each link of the file is a frame with the name of the link. Fixed joints become part of the frames. Bounds,
-        names and mimic joints are kept.
+        names and mimic joints are kept. A velocity, acceleration or jerk that is 0 or missing is not bounded.
 
         Parameters
         ----------
@@ -154,17 +155,27 @@ class Robot(Data, CoreRobot):
             'base_y' and 'base_yaw' without bounds. If the file has a floating joint, give 'fixed' or 'planar', which
             replaces the floating joint.
         locked : mapping, optional
-            Positions of joints that are fixed, by name [rad] or [m]; fixed joints are not joints of the robot.
+            Positions of joints that are fixed, by name [rad] or [m]; fixed joints are not joints of the robot. A mimic
+            joint can be fixed only if its leader does not exist.
         tips : iterable of str, optional
             Links that the robot moves. Joints that move none of these links are fixed at 0, or at the position in their
             range that is nearest to 0.
+        limits : JointLimits, optional
+            Bounds that replace bounds of the file, before the bounds are checked.
+
+        A UrdfWarning is issued if lower = upper: the joint is fixed; and if the range of a mimic joint leaves no range
+        for its leader: the range of the mimic joint is ignored.
 
         Raises ValueError if the file is not a valid URDF or more than MAX_DOF joints move, ParameterError if a locked
         joint does not exist or its position is out of range, OSError if the file cannot be read.
         """
+        from .io.urdf import warn
         from .io.urdf_tree import read_tree
 
-        return cls(**read_tree(path, base=base, locked=locked or {}, tips=tips))
+        notes: list[str] = []
+        robot = cls(**read_tree(path, base=base, locked=locked or {}, tips=tips, limits=limits, notes=notes))
+        warn(path, notes, 3)
+        return robot
 
 
 def _from_urdf(

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <fpbm/model/coupled_arm.hpp>
 #include <string>
@@ -49,27 +50,35 @@ class Controller {
   /// Whether the controller rejects its configuration, with a message that contains `text`.
   [[nodiscard]] bool refuses(const std::string& text) { return !configure() && logged(text); }
 
-  /// Sum of the displacements of all joints in 0.3 s after a twist [rad]; -1 if the activation fails.
-  double displacement() {
+  /// Activates the controller at q.
+  [[nodiscard]] bool activate() {
     q.resize(stand_in::parameters.joints.size());
-    const std::vector<double> start = q;
-    std::vector<stand_in::Lock> locks(2 * q.size());
+    locks_ = std::vector<stand_in::Lock>(2 * q.size());
     std::vector<hardware_interface::LoanedCommandInterface> commands;
     std::vector<hardware_interface::LoanedStateInterface> states;
     for (std::size_t i = 0; i < q.size(); ++i) {
-      commands.emplace_back(q[i], locks[i]);
-      states.emplace_back(q[i], locks[q.size() + i]);
+      commands.emplace_back(q[i], locks_[i]);
+      states.emplace_back(q[i], locks_[q.size() + i]);
     }
     controller_->assign_interfaces(std::move(commands), std::move(states));
-    if (controller_->on_activate({}) != CallbackReturn::SUCCESS) return -1.0;
-    using Twist = geometry_msgs::msg::TwistStamped;
-    Twist twist;
+    return controller_->on_activate({}) == CallbackReturn::SUCCESS;
+  }
+  /// A message on a topic, and then ticks of 1 ms.
+  template <typename Message>
+  void send(const std::string& topic, const Message& message, int ticks) {
+    std::any_cast<std::weak_ptr<rclcpp::Subscription<Message>>>(controller_->get_node()->topics.at(topic))
+        .lock()
+        ->hear(message);
+    for (int i = 0; i < ticks; ++i) (void)controller_->update(rclcpp::Time(), rclcpp::Duration(0, 1000000));
+  }
+  /// Sum of the displacements of all joints in 0.3 s after a twist [rad]; -1 if the activation fails.
+  double displacement() {
+    if (!activate()) return -1.0;
+    const std::vector<double> start = q;
+    geometry_msgs::msg::TwistStamped twist;
     twist.header.frame_id = stand_in::parameters.base_frame;
     twist.twist.linear.z = 0.05;
-    std::any_cast<std::weak_ptr<rclcpp::Subscription<Twist>>>(controller_->get_node()->topics.at("~/target_twist"))
-        .lock()
-        ->hear(twist);
-    for (int i = 0; i < 300; ++i) (void)controller_->update(rclcpp::Time(), rclcpp::Duration(0, 1000000));
+    send("~/target_twist", twist, 300);
     double sum = 0.0;
     for (std::size_t i = 0; i < q.size(); ++i) sum += std::abs(q[i] - start[i]);
     return sum;
@@ -90,6 +99,7 @@ class Controller {
 
  private:
   std::unique_ptr<controller_interface::ControllerInterface> controller_ = stand_in::exported_controller();
+  std::vector<stand_in::Lock> locks_;
 };
 
 /// Every preset with the description of its arm, with a missing joint, and with the description of every other arm.
@@ -97,6 +107,10 @@ void every_preset() {
   for (const auto& preset : kAll) {
     const Given own = given(preset.name);
     Controller controller(own);
+    for (std::size_t i = 0; i < own.joints.size(); ++i) {
+      const auto& bounds = own.chain.joints[i].bounds;
+      controller.q[i] = std::clamp(controller.q[i], bounds.lower + 0.2, bounds.upper - 0.2);
+    }
     const double displacement = controller.configure() ? controller.displacement() : -1.0;
     check(displacement > 0.001 && displacement < 1.0, (own.arm + ": displacement of all joints in 0.3 s [rad]").c_str(),
           displacement);
@@ -111,6 +125,55 @@ void every_preset() {
       check(mistaken.refuses("joint"), (own.arm + ": refused with the preset " + other.name).c_str(), 1);
     }
   }
+}
+
+/// An SO-101 with five joints: the tip reaches the position of a pose and the direction of its z axis; the rotation
+/// about the axis is free.
+void few_joints() {
+  const Given so101 = given("so101");
+  fpbm::SerialArm<5> arm(so101.chain);
+  fpbm::Kinematics<fpbm::Pose, 5> kinematics;
+  const fpbm::Vector<5> start(0.1, -0.4, 0.5, 0.6, 0.2);
+  arm.kinematics(start + fpbm::Vector<5>(0.1, 0.1, -0.1, -0.15, 0.0), kinematics);
+  fpbm::Transform<> target = kinematics.tip;
+  target.R = target.R * fpbm::rotation(fpbm::Vector<3>(0.0, 0.0, 0.5));
+  Controller controller(so101);
+  controller.q.assign(start.begin(), start.end());
+  check(controller.configure() && controller.activate(), "so101: configured and active", 1);
+  geometry_msgs::msg::PoseStamped pose;
+  pose.header.frame_id = stand_in::parameters.base_frame;
+  const fpbm::Vector<4> w = fpbm::quaternion(target.R);
+  pose.pose.position.x = target.p(0);
+  pose.pose.position.y = target.p(1);
+  pose.pose.position.z = target.p(2);
+  pose.pose.orientation.w = w(0);
+  pose.pose.orientation.x = w(1);
+  pose.pose.orientation.y = w(2);
+  pose.pose.orientation.z = w(3);
+  controller.send("~/target_pose", pose, 6000);
+  const fpbm::Transform<> tip = controller.tip();
+  const double off = (tip.p - target.p).norm();
+  check(off < 1e-6, "so101: error of the position [m]", off);
+  const double turned = (tip.R.col(2) - target.R.col(2)).norm();
+  check(turned < 1e-4, "so101: error of the z axis [rad]", turned);
+
+  target.p(2) += 2.0;  // Unreachable: the arm stops at the workspace boundary.
+  pose.pose.position.z = target.p(2);
+  controller.send("~/target_pose", pose, 8000);
+  const std::vector<double> before = controller.q;
+  controller.send("~/target_pose", pose, 1000);
+  double moved = 0.0;
+  for (std::size_t i = 0; i < before.size(); ++i) moved = std::max(moved, std::abs(controller.q[i] - before[i]));
+  check(moved < 1e-3, "so101: motion in 1 s with an unreachable target [rad]", moved);
+}
+
+/// A velocity of 0 in the description is not a bound.
+void no_velocities() {
+  Given panda = given("panda");
+  for (auto& joint : panda.chain.joints) joint.bounds.velocity = 0.0;
+  Controller controller(panda);
+  const bool good = controller.configure();
+  check(good && controller.displacement() > 0.001, "velocity 0 in robot_description: the bounds are the preset's", 1);
 }
 
 void frames() {
@@ -216,6 +279,8 @@ void mimic() {
 
 void descriptions() {
   every_preset();
+  few_joints();
+  no_velocities();
   frames();
   differences();
   limits();

@@ -232,6 +232,95 @@ TEST(Presets, ur10e_agrees_with_other_models) {
   expect_universal_robot(ur10e, {120.0, 120.0, 180.0, 180.0, 180.0, 180.0});
 }
 
+/// Poses: xarm7.urdf.xacro of xarm_ros2, with exact right angles, link7, by Pinocchio 4.1.0. At zero: UFACTORY's user
+/// manual. Bounds on position: JOINT_LIMITS of xArm-Python-SDK.
+TEST(Presets, xarm7_agrees_with_other_models) {
+  const Chain<> xarm7 = preset("xarm7");
+  // clang-format off
+  expect_tip<7>(xarm7, Vector<7>::Zero(), {
+      1.0, 0.0, 0.0, 0.206,
+      0.0, -1.0, 0.0, 0.0,
+      0.0, 0.0, -1.0, 0.1205});
+  expect_tip<7>(xarm7, {0.5, -1.0, 1.5, 2.0, -0.5, 0.7, -1.5}, {
+      -0.279771862438435, -0.953422976201479, -0.112748984203158, -0.605874921108088,
+      0.170655596881777, -0.164954926197348, 0.971425004607227, 0.174935895682167,
+      -0.944777419417216, 0.252536137561225, 0.20885671400509, 0.594460909120216});
+  // clang-format on
+  const JointLimits<7> limits = SerialArm<7>(xarm7).limits();
+  const double turn = 2.0 * kHalfTurn;
+  const Vector<7> lower{-turn, -2.059488, -turn, -0.191986, -turn, -1.692969, -turn};
+  const Vector<7> upper{turn, 2.094395, turn, 3.92699, turn, kHalfTurn, turn};
+  EXPECT_LE((limits.lower - lower).cwiseAbs().maxCoeff(), 5e-4);
+  EXPECT_LE((limits.upper - upper).cwiseAbs().maxCoeff(), 5e-4);
+  EXPECT_LE((limits.velocity - kDegree * Vector<7>::Constant(180.0)).cwiseAbs().maxCoeff(), 2e-3);
+  EXPECT_EQ(limits.acceleration, Vector<7>::Constant(20.0));
+}
+
+/// Poses: so101_new_calib.urdf, with exact right angles and without lengths below 1 µm, gripper_frame_link, by
+/// Pinocchio 4.1.0. Ranges: so101_new_calib.xml, for MuJoCo.
+TEST(Presets, so101_agrees_with_other_models) {
+  const Chain<> so101 = preset("so101");
+  // clang-format off
+  expect_tip<5>(so101, Vector<5>::Zero(), {
+      0.0, 0.0, 1.0, 0.3913619,
+      0.0486602763602726, 0.998815387098408, 0.0, -1.12464278031993e-05,
+      -0.998815387098408, 0.0486602763602726, 0.0, 0.226468744613783});
+  expect_tip<5>(so101, {0.5, -1.0, 1.5, -1.2, -0.5}, {
+      0.732417788726779, 0.114185860581666, 0.671212166158958, 0.214293648237131,
+      0.194193947639099, 0.909852137025584, -0.366684877586083, -0.091572905463523,
+      -0.652574052086748, 0.398911867450947, 0.644217687237691, 0.238206703616266});
+  // clang-format on
+  const JointLimits<5> limits = SerialArm<5>(so101).limits();
+  EXPECT_LE((limits.lower - Vector<5>(-1.91986, -1.74533, -1.69, -1.65806, -2.74385)).cwiseAbs().maxCoeff(), 1e-5);
+  EXPECT_LE((limits.upper - Vector<5>(1.91986, 1.74533, 1.69, 1.65806, 2.84121)).cwiseAbs().maxCoeff(), 1e-5);
+  EXPECT_LE((limits.velocity.array() - 45.0 * 6.0 * kDegree).abs().maxCoeff(), 3e-3);
+  EXPECT_EQ(names_of(so101),
+            (std::vector<std::string>{"shoulder_pan", "shoulder_lift", "elbow_flex", "wrist_flex", "wrist_roll"}));
+}
+
+/// Poses: v10.urdf.xacro of openarm_description 1.0.0, openarm_link8, by Pinocchio 4.1.0.
+TEST(Presets, openarm_agrees_with_its_urdf) {
+  const Chain<> openarm = preset("openarm");
+  // clang-format off
+  expect_tip<7>(openarm, Vector<7>::Zero(), {
+      1.0, 0.0, 0.0, 0.000001,
+      0.0, 1.0, 0.0, 0.0205,
+      0.0, 0.0, 1.0, 0.5585});
+  expect_tip<7>(openarm, {0.5, -1.0, 1.5, 2.0, -0.5, 0.7, -1.5}, {
+      -0.314966872816243, -0.927570963758344, 0.201017353033944, -0.00508180368261074,
+      -0.651313423409579, 0.365295584388916, 0.665093948636172, 0.0109616141427462,
+      -0.690352586375145, 0.0785572607616719, -0.719195427729328, 0.359267530681704});
+  // clang-format on
+  const JointLimits<7> limits = SerialArm<7>(openarm).limits();
+  EXPECT_EQ(limits.lower, Vector<7>(-1.396263, -1.745329, -1.570796, 0.0, -1.570796, -0.785398, -1.570796));
+  EXPECT_EQ(limits.upper, Vector<7>(3.490659, 1.745329, 1.570796, 2.443461, 1.570796, 0.785398, 1.570796));
+  EXPECT_EQ(limits.velocity, Vector<7>(16.754666, 16.754666, 5.445426, 5.445426, 20.943946, 20.943946, 20.943946));
+  EXPECT_EQ(names_of(openarm).front(), "openarm_joint1");
+  EXPECT_EQ(names_of(openarm).back(), "openarm_joint7");
+}
+
+/// Poses and ranges: z1.urdf of example-robot-data 6.0.0, gripperStator, by Pinocchio 4.1.0.
+TEST(Presets, z1_agrees_with_other_models) {
+  const Chain<> z1 = preset("z1");
+  // clang-format off
+  expect_tip<6>(z1, Vector<6>::Zero(), {
+      1.0, 0.0, 0.0, 0.0382,
+      0.0, 1.0, 0.0, 0.0,
+      0.0, 0.0, 1.0, 0.1605});
+  expect_tip<6>(z1, {0.5, 1.0, -1.5, -1.2, -0.5, 2.5}, {
+      0.130619111235025, -0.140331893484869, 0.981450766697507, -0.0168719131015651,
+      -0.474944944154914, -0.877807278362211, -0.0623031465980116, -0.0639566776181609,
+      0.870267744893408, -0.457997097944167, -0.181308329849632, 0.709169182896224});
+  // clang-format on
+  const JointLimits<6> limits = SerialArm<6>(z1).limits();
+  const Vector<6> lower{-2.61799387799149, 0.0, -2.87979326579064, -1.51843644923507, -1.34390352403563,
+                        -2.79252680319093};
+  const Vector<6> upper{2.61799387799149, 2.96705972839036, 0.0, 1.51843644923507, 1.34390352403563, 2.79252680319093};
+  EXPECT_LE((limits.lower - lower).cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_LE((limits.upper - upper).cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_EQ(limits.velocity, Vector<6>::Constant(3.1415));
+}
+
 /// The posture with the largest distance to singular postures, of a hundred random postures in the middle of the joint
 /// ranges.
 Vector<kOpen> open_posture(const AnyArm<Position<3>>& arm) {
@@ -245,7 +334,8 @@ Vector<kOpen> open_posture(const AnyArm<Position<3>>& arm) {
     const Vector<kOpen> q = lower + share.cwiseProduct(upper - lower);
     Kinematics<Pose, kOpen> kinematics;
     arm.kinematics(q, kinematics);
-    const double open = manipulability(kinematics.J);
+    const double open =
+        arm.dof() < Pose::kRows ? manipulability(kinematics.J.topRows<3>().eval()) : manipulability(kinematics.J);
     if (open > most) best = q;
     most = std::max(most, open);
   }
@@ -279,8 +369,9 @@ TEST(Presets, run_in_a_control_loop_with_default_limits) {
     const Vector<kOpen> ones = Vector<kOpen>::Ones(arm.dof());
     const auto z = NullSpace<kOpen>{}.with_damping(2.0);
     EXPECT_NO_THROW((expect_to_reach_a_near_target<Position<3>>(arm, FPBM<kOpen>(0.6, ones, 20.0, 100.0, z))));
-    EXPECT_NO_THROW((expect_to_reach_a_near_target<Pose>(arm, FPBM<kOpen>(0.6, ones, 20.0, 100.0, z))));
     EXPECT_NO_THROW((expect_to_reach_a_near_target<Position<3>>(arm, WMVN<kOpen>(ones, 10.0))));
+    if (arm.dof() < Pose::kRows) continue;
+    EXPECT_NO_THROW((expect_to_reach_a_near_target<Pose>(arm, FPBM<kOpen>(0.6, ones, 20.0, 100.0, z))));
     EXPECT_NO_THROW((expect_to_reach_a_near_target<Pose>(arm, WMVN<kOpen>(ones, 10.0))));
   }
 }

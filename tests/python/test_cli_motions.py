@@ -323,8 +323,8 @@ TWO_BRANCHES = """<robot name="two"><link name="base"/><link name="camera"/><lin
     [
         (
             ["pnada"],
-            "ARM = 'pnada': must be one of panda, fr3, iiwa14, gen3, ur5e, ur10e, two_pandas, g1_upper_body, "
-            "planar:1,1,1,1, "
+            "ARM = 'pnada': must be one of panda, fr3, iiwa14, gen3, ur5e, ur10e, xarm7, so101, openarm, z1, "
+            "two_pandas, g1_upper_body, planar:1,1,1,1, "
             "a URDF file; did you mean 'panda'?",
         ),
         (["planar:1,a"], "ARM = planar:1,a: must be planar: and the link lengths, as in planar:1,1,1,1"),
@@ -378,8 +378,8 @@ def test_a_missing_arm_is_reported() -> None:
     result = call("track")
     assert result.exit_code == 2
     assert (
-        "Missing argument 'ARM': panda, fr3, iiwa14, gen3, ur5e, ur10e, two_pandas, g1_upper_body, "
-        "planar:1,1,1,1 or a URDF file." in result.stderr
+        "Missing argument 'ARM': panda, fr3, iiwa14, gen3, ur5e, ur10e, xarm7, so101, openarm, z1, "
+        "two_pandas, g1_upper_body, planar:1,1,1,1 or a URDF file." in result.stderr
     )
 
 

@@ -12,10 +12,9 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 from test_capsules import ARMS, ROBOTS, fitted, heavy, outside, with_robots
-from test_preset_capsules import load_tool, needs_clone, urdf_of
+from test_preset_capsules import PRESETS, load_tool, needs_clone, urdf_of
 
 import fpbm_cpp as fp
-from fpbm_cpp._core import PRESETS
 from fpbm_cpp._types import Array
 from fpbm_cpp.clearance import MARGIN
 from fpbm_cpp.io.capsule_fit import Fit

@@ -271,7 +271,7 @@ def test_planar_paths_have_a_plane_for_arms_in_space_only() -> None:
     assert prepare({"arm": PANDA, "path": line}).job["path"].get("in_plane") is None
 
 
-@pytest.mark.parametrize("name", ["panda", "iiwa14", "gen3", "ur5e", "ur10e"])
+@pytest.mark.parametrize("name", ["panda", "iiwa14", "gen3", "ur5e", "ur10e", "xarm7"])
 @pytest.mark.parametrize("task", ["position", "pose"])
 def test_every_preset_follows_the_default_path(name: str, task: str) -> None:
     motion = prepare({"arm": {"kind": "preset", "name": name}, "run": {"task": task}})
@@ -403,7 +403,8 @@ LAWS = "sin_squared, quintic, constant_speed"
         ("[arm]\nkind = 'preset'", "arm.name: is missing"),
         (
             "[arm]\nkind = 'preset'\nname = 'pnada'",
-            "arm.name = 'pnada': must be one of panda, fr3, iiwa14, gen3, ur5e, ur10e, two_pandas, g1_upper_body; "
+            "arm.name = 'pnada': must be one of panda, fr3, iiwa14, gen3, ur5e, ur10e, xarm7, so101, openarm, z1, "
+            "two_pandas, g1_upper_body; "
             "did you mean 'panda'?",
         ),
         ("[arm]\nkind = 'planar'\nlengths = [1, -1]", "arm.lengths[1] = -1: must be positive and finite"),

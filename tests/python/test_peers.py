@@ -317,3 +317,27 @@ def test_presets_agree_with_manipulapy(name):
     if name.startswith("ur"):
         speeds = [float(limit.get("velocity")) for limit in limits]
         np.testing.assert_allclose(preset.limits.velocity, speeds, rtol=1e-12)
+
+
+# URDFs in the PyPI package example-robot-data.
+OF_EXAMPLE_ROBOT_DATA = {
+    "z1": ("z1_description/urdf/z1.urdf", "gripperStator", 1e-12),
+    "so101": ("so_arm_description/urdf/so101.urdf", "gripper_frame_link", 2e-5),  # The file has five digits of π.
+}
+
+
+@pytest.mark.parametrize("name", OF_EXAMPLE_ROBOT_DATA)
+def test_presets_agree_with_example_robot_data(name):
+    file, tip, tolerance = OF_EXAMPLE_ROBOT_DATA[name]
+    try:
+        data = metadata.distribution("example-robot-data")
+    except metadata.PackageNotFoundError:
+        pytest.skip("example-robot-data is not installed")
+    other = fp.SerialArm.from_urdf(str(data.locate_file(f"cmeel.prefix/share/example-robot-data/robots/{file}")), tip)
+    preset = fp.SerialArm.preset(name)
+    assert preset.joint_names == other.joint_names
+    rng = np.random.default_rng(0)
+    for q in rng.uniform(-1.5, 1.5, (100, preset.dof)):
+        np.testing.assert_allclose(preset.forward(q), other.forward(q), rtol=0, atol=tolerance)
+    np.testing.assert_allclose(preset.limits.lower, other.limits.lower, rtol=0, atol=1e-5)
+    np.testing.assert_allclose(preset.limits.upper, other.limits.upper, rtol=0, atol=1e-5)

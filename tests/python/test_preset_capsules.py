@@ -17,7 +17,6 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import fpbm_cpp as fp
-from fpbm_cpp._core import PRESETS
 from fpbm_cpp._types import Array
 from fpbm_cpp.io.capsule_fit import distances
 from fpbm_cpp.io.mesh_file import find_mesh
@@ -27,6 +26,7 @@ from fpbm_cpp.io.urdf_shapes import read_shapes
 pytest.importorskip("trimesh")
 
 ROOT = Path(__file__).parents[2]
+PRESETS = ("panda", "fr3", "iiwa14", "gen3", "ur5e", "ur10e")  # The presets that have capsules.
 HEADER = ROOT / "cpp/include/fpbm/clearance/preset_capsules.hpp"
 TOOL = ROOT / "tools/preset_capsules.py"
 NUMBER = r"(-?\d+\.\d{4})"

@@ -217,7 +217,7 @@ def test_planar_base(write) -> None:
         (
             robot_text(link("a"), link("b"), joint("j", "a", "b").replace('upper="2"', 'upper="-1"')),
             {},
-            "joint 'j': lower = -1: must be below upper = -1, or be in locked=",
+            "no joints move: must be 1 to 64: to move a joint, give limits=fp.JointLimits",
         ),
         (TWO_ARMS, {"base": "wheels"}, r"base = 'wheels': must be"),
         (

@@ -77,9 +77,12 @@ def test_an_arm_has_names_limits_and_repr():
 @pytest.mark.parametrize("name", PRESETS)
 def test_every_preset_runs_in_a_control_loop_with_default_limits(name, level, task):
     pytest.importorskip("tomlkit", reason="needs the command line's extras")
-    from fpbm_cpp.job.motion import READY
+    from fpbm_cpp.job.motion import READY, ready
 
-    arm, q0 = fp.SerialArm.preset(name), READY[name]
+    arm = fp.SerialArm.preset(name)
+    if arm.dof < 6 and task == "pose":
+        pytest.skip("fewer joints than rows")
+    q0 = READY.get(name) or ready(arm, task)
     limits, ones = arm.limits, np.ones(arm.dof)
     scheme = fp.WMVN(ones, k=10) if level == "velocity" else fp.FPBM(0.6, ones, 20, 100, null_damping=2)
     tracker = fp.Tracker(arm, scheme, q0, task=task)

@@ -38,8 +38,9 @@ ALSO = click.Choice(["csv", "rosbag", "gif", "mp4"])
 def track(request: Request, out: Path | None, dark: bool, also: tuple[str, ...]) -> None:
     """Move an arm along a path, and print key figures of the motion.
 
-    ARM is panda, fr3, iiwa14, gen3, ur5e or ur10e; planar: and the link lengths, as in planar:1,1,1,1; or a URDF file
-    with --tip. ARM can also be a robot: two_pandas, or a URDF file with a --task for each frame that follows the path.
+    ARM is panda, fr3, iiwa14, gen3, ur5e, ur10e, xarm7, so101, openarm or z1; planar: and the link lengths, as in
+    planar:1,1,1,1; or a URDF file with --tip. ARM can also be a robot: two_pandas, or a URDF file with a --task for
+    each frame that follows the path. An arm in space with 4 or 5 joints has a position task, and below it an axis task.
     All options have defaults, and the defaults in use are printed. Separate several numbers by commas.
 
     With --out, the folder gets run.png, run.npz, which fpbm_cpp.load reads, and job.toml, which contains all options.

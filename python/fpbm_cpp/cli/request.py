@@ -67,7 +67,7 @@ BASE = "Base link of a URDF file. For a robot: fixed, or planar, which moves alo
 LOCKED = "Fix a joint of the robot in a URDF file at a position; can be repeated.  [rad, m]"
 TASK = (
     "Task of the tip: position or pose. For a job with tasks: name of the task that follows the path. For a robot: a "
-    "frame that moves; can be repeated.  [default: position]"
+    "frame that moves; can be repeated.  [default: position; with 4 or 5 joints in space, position and then axis]"
 )
 CLEAR = (
     "Avoid self-collision, with the collision geometry of this URDF file, and the job's obstacles; keeps joint limits."
@@ -109,13 +109,18 @@ def _job_options(kind: bool, path: bool, clear: bool) -> Iterator[JobOption]:
     )
     if path:
         yield JobOption("limits", "keep", "--limits/--no-limits", help=text)
-    for key, declared in known("limits").items():
-        yield _option("limits", key, declared, prefix="limit-")
+    yield from limit_options()
     if clear:
         shapes = known("clearance", "urdf")
         yield JobOption("clearance", "file", "--clearance", metavar="FILE", help=CLEAR)
         for key, text in (("srdf", SRDF), ("margin", MARGIN), ("per_link", PER_LINK)):
             yield _option("clearance", key, replace(shapes[key], help=text))
+
+
+def limit_options() -> Iterator[JobOption]:
+    """Options that change the limits of an arm."""
+    for key, declared in known("limits").items():
+        yield _option("limits", key, declared, prefix="limit-")
 
 
 def _option(section: str, key: str, declared: Parameter, prefix: str = "", of: Sequence[str] = ()) -> JobOption:

@@ -3,9 +3,10 @@
 import os
 import platform
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import click
 import numpy as np
@@ -13,7 +14,7 @@ from click.shell_completion import get_completion_class
 
 from .._core import PRESETS, ROBOT_PRESETS, __version__
 from .._types import Array
-from ..arms import Joint, SerialArm
+from ..arms import Joint, JointLimits, SerialArm, limited
 from ..capsule import Capsule
 from ..clearance import Clearance
 from ..io.header import SCALARS
@@ -21,10 +22,12 @@ from ..job import Motion, prepare
 from ..job.sections import Table
 from ..motion.lanes import LANES
 from ..motion.sweeping import sweep
+from ..parameter import parameters
 from ..robots import Robot
 from ..schemes import SCHEMES
 from ..worst import measure
 from .plain import OUT, PLACE, WIDTH, Plain, file_errors
+from .request import limit_options
 from .text import columns
 
 EVALUATIONS = 4000  # Evaluations of a scheme by RK4 on a path of 1 s at 1 kHz.
@@ -144,13 +147,21 @@ def reproduce(out: Path) -> None:
 )
 @click.option("--scalar", type=click.Choice(SCALARS), default="double", help="Type of all numbers.")
 def export_header(
-    arm: Path, tip: tuple[str, ...], base: str | None, out: Path, name: str | None, capsules: bool, scalar: str
+    arm: Path,
+    tip: tuple[str, ...],
+    base: str | None,
+    out: Path,
+    name: str | None,
+    capsules: bool,
+    scalar: str,
+    **bounds: Any,
 ) -> None:
     """Write a URDF file, or a preset such as panda or two_pandas, as a C++ header.
 
     With one --tip, the header constructs the arm from base to tip. With several --tip, the header constructs the robot:
     the tree of the joints that move the tips, with these links as frames. Without --tip, the robot has all joints and
-    links of the file. A program with the header reads no file.
+    links of the file. A program with the header reads no file. The options for limits replace bounds of the file or
+    the preset: URDF files have no bounds on acceleration.
     """
     from ..io import write_whole
     from ..io.header import export_header, export_tree, namespace_of
@@ -158,13 +169,18 @@ def export_header(
     to_stdout = str(out) == "-"
     try:
         name = name or namespace_of((arm if to_stdout else out).stem)
+        given = {key.removeprefix("limits__"): value for key, value in bounds.items() if value is not None}
+        limits = JointLimits(**given) if given else None
         if str(arm) in ROBOT_PRESETS or (str(arm) not in PRESETS and len(tip) != 1):
             if capsules:
                 raise click.UsageError("--capsules are for an arm only: give one --tip.")
-            robot, source = _robot(arm, tip, base)
+            robot, source = _robot(arm, tip, base, limits)
+            source += _changed(given)
             header = export_tree(robot, name=name, source=source, scalar=scalar)
         else:
-            joints, frame, shapes, source = _preset(arm, tip, base, capsules) or _urdf(arm, tip[0], base, capsules)
+            exported = _preset(arm, tip, base, capsules, limits) or _urdf(arm, tip[0], base, capsules, limits)
+            joints, frame, shapes, source = exported
+            source += _changed(given)
             header = export_header(joints, frame, name=name, source=source, capsules=shapes, scalar=scalar)
     except ValueError as error:
         raise click.ClickException(str(error)) from None
@@ -175,31 +191,50 @@ def export_header(
         write_whole(out.resolve(), header.encode())
 
 
-def _preset(arm: Path, tip: Sequence[str], base: str | None, capsules: bool) -> Exported | None:
+export_header.params += limit_options()
+
+
+def _changed(limits: Mapping[str, Any]) -> str:
+    """Changed limits, for a comment."""
+    said = ((key, limits[key]) for key in parameters(JointLimits) if key in limits)
+    return "".join(f", --limit-{key.replace('_', '-')} {_text(value)}" for key, value in said)
+
+
+def _text(value: Any) -> str:
+    return ",".join(f"{number:g}" for number in np.ravel(value))
+
+
+def _preset(
+    arm: Path, tip: Sequence[str], base: str | None, capsules: bool, limits: JointLimits | None
+) -> Exported | None:
     if str(arm) not in PRESETS:
         return None
     _require_no_links(arm, tip, base)
     preset = SerialArm.preset(str(arm))
-    return preset.joints, preset.tip, Clearance.preset(str(arm)).capsules if capsules else None, f"preset {arm}"
+    joints = limited(preset.joints, limits)
+    return joints, preset.tip, Clearance.preset(str(arm)).capsules if capsules else None, f"preset {arm}"
 
 
-def _urdf(urdf: Path, tip: str, base: str | None, capsules: bool) -> Exported:
+def _urdf(urdf: Path, tip: str, base: str | None, capsules: bool, limits: JointLimits | None) -> Exported:
     from ..io.capsules import capsules_of
     from ..io.urdf import read_urdf
 
     with file_errors("read", urdf):
-        joints, frame = read_urdf(urdf, tip, base)
-        shapes = capsules_of(urdf, tip, base) if capsules else None
+        joints, frame = read_urdf(urdf, tip, base, limits)
+        shapes = capsules_of(urdf, tip, base, limits=limits) if capsules else None
     return joints, frame, shapes, _said(urdf, base, [tip])
 
 
-def _robot(urdf: Path, tips: Sequence[str], base: str | None) -> tuple[Robot, str]:
+def _robot(urdf: Path, tips: Sequence[str], base: str | None, limits: JointLimits | None) -> tuple[Robot, str]:
     """The robot of a preset or a file; the frames are the tips, by default all links."""
     if str(urdf) in ROBOT_PRESETS:
         _require_no_links(urdf, tips, base)
-        return Robot.preset(str(urdf)), f"preset {urdf}"
+        robot = Robot.preset(str(urdf))
+        changed = limited([each.joint for each in robot.joints], limits)
+        joints = [replace(each, joint=joint) for each, joint in zip(robot.joints, changed)]
+        return replace(robot, joints=joints), f"preset {urdf}"
     with file_errors("read", urdf):
-        robot = Robot.from_urdf(urdf, base=base, tips=tips or None)
+        robot = Robot.from_urdf(urdf, base=base, tips=tips or None, limits=limits)
     frames = [frame for frame in robot.named_frames if not tips or frame.name in tips]
     return replace(robot, named_frames=frames), _said(urdf, base, tips)
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .._types import Array
+from ..arms import JointLimits
 from ..capsule import Capsule
 from ..clearance import MARGIN
 from ..errors import wrong
@@ -37,6 +38,7 @@ def capsules_of(
     *,
     locked: Mapping[str, float] | None = None,
     tips: Iterable[str] | None = None,
+    limits: JointLimits | None = None,
     per_link: int = 2,
     finer: bool = True,
     margin: float = MARGIN,
@@ -51,8 +53,9 @@ def capsules_of(
     [rad] or [m], the capsules keep the margin if clear() finds capsules that keep the margin, at most 8 per link.
     Allowed pairs of names are excepted.
 
-    Without tip, the joints are as in Robot.from_urdf(path, base=base, locked=locked, tips=tips), which fixes all other
-    joints. With tip, the joints are as in SerialArm.from_urdf(path, tip, base). Each link, also a tool or a finger
+    Without tip, the joints are as in Robot.from_urdf(path, base=base, locked=locked, tips=tips, limits=limits), which
+    fixes all other joints. With tip, the joints are as in SerialArm.from_urdf(path, tip, base, limits=limits). Each
+    link, also a tool or a finger
     beyond the tip, belongs to the last joint between base and tip that moves the link. If no joint between base
     and tip moves the link, the link belongs to the base. Joints that are not between base and tip are fixed at zero, so
     the capsules of a gripper or of another arm are valid for that posture only. Visual geometry is not read: a link
@@ -68,7 +71,7 @@ def capsules_of(
     """
     if isinstance(per_link, bool) or not isinstance(per_link, (int, np.integer)) or per_link < 1:
         raise wrong("per_link", per_link, f" = {per_link!r}: must be a whole number, at least 1")
-    joints, places = _joints(path, tip, base, locked, tips)
+    joints, places = _joints(path, tip, base, locked, tips, limits)
     shapes = read_shapes(path)
     if not shapes:
         remedy = "must be on at least one link: add <collision>, or give capsules to Clearance()"
@@ -99,15 +102,16 @@ def _joints(
     base: str | None,
     locked: Mapping[str, float] | None,
     tips: Iterable[str] | None,
+    limits: JointLimits | None,
 ) -> tuple[list[TreeJoint], Places]:
     """The moving joints as joints of a tree, and the place of each link of the file."""
     if tip is None:
-        tree = read_tree(path, base=base, locked=locked, tips=tips)
+        tree = read_tree(path, base=base, locked=locked, tips=tips, limits=limits)
         return tree["joints"], {frame.name: (frame.link, frame.offset) for frame in tree["named_frames"]}
     for name, given in {"locked": locked, "tips": tips}.items():
         if given is not None:
             raise wrong(name, given, f" = {given!r:.60}: is for a Robot: give {name}= without tip=")
-    joints, _, places = read_places(path, tip, base)
+    joints, _, places = read_places(path, tip, base, limits)
     return [TreeJoint(joint, i) for i, joint in enumerate(joints)], places
 
 

@@ -3,7 +3,8 @@
 import difflib
 import os
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from graphlib import CycleError, TopologicalSorter
 from math import inf
@@ -14,10 +15,12 @@ from numpy.typing import ArrayLike
 
 from .._core import MAX_DOF, rotation
 from .._types import Array
-from ..arms import Joint
-from ..errors import ParameterError, wrong
+from ..arms import NO_BOUNDS, Joint, JointLimits, limited
+from ..errors import ParameterError, UrdfWarning, wrong
 from .urdf_file import ENVELOPE, UrdfJoint, read_robot
 
+OWN_RANGE = "give limits=fp.JointLimits(lower=..., upper=...)"
+FREE = f"to move a joint, {OWN_RANGE}"
 TYPES = ("revolute", "continuous", "prismatic", "fixed")
 Tree = dict[str, "UrdfJoint | None"]  # The parent joint of each link, None for the root.
 # For each link: number of joints that move the link, and the pose of the link in the frame of the last joint.
@@ -25,35 +28,69 @@ Places = dict[str, tuple[int, Array]]
 Follow = tuple[str, float, float]  # Leader, ratio, offset: the position is ratio times the leader's plus offset.
 
 
-def read_urdf(path: str | os.PathLike[str], tip: str, base: str | None = None) -> tuple[list[Joint], Array]:
+def read_urdf(
+    path: str | os.PathLike[str], tip: str, base: str | None = None, limits: JointLimits | None = None
+) -> tuple[list[Joint], Array]:
     """Read the moving joints from link base (default: the root) to link tip, and the frame of the tip.
 
     See SerialArm.from_urdf(). The bounds of a leader are narrowed so that its mimic joints keep their own bounds.
     """
-    return read_places(path, tip, base)[:2]
+    notes: list[str] = []
+    joints, frame, _ = read_places(path, tip, base, limits, notes)
+    warn(path, notes, 4)
+    return joints, frame
 
 
-def read_places(path: str | os.PathLike[str], tip: str, base: str | None = None) -> tuple[list[Joint], Array, Places]:
-    """The result of read_urdf(), and the place of each link of the file; joints off the chain are fixed at zero."""
+def read_places(
+    path: str | os.PathLike[str],
+    tip: str,
+    base: str | None = None,
+    limits: JointLimits | None = None,
+    notes: list[str] | None = None,
+) -> tuple[list[Joint], Array, Places]:
+    """The result of read_urdf(), and the place of each link of the file; joints off the chain are fixed at zero.
+
+    notes: list for the texts of warnings.
+    """
     name = os.fsdecode(path)
+    own = own_bounds(limits)
+    notes = [] if notes is None else notes
     try:
         links, every = read_robot(name)
         above = tree_of(links, every)
         branch = _branch(above, tip, base)
-        follows = follows_of(branch, {joint.name: joint.mimic for joint in every})
-        joints, places, held = _chain(branch, follows)
-        joints, frame = coupled_joints(joints, follows), places[tip][1]
+        with or_else("give another base or tip"):
+            follows = follows_of(branch, {joint.name: joint.mimic for joint in every})
+            joints, places = _chain(branch, follows, own, notes)
+        joints, frame = limited(coupled_joints(joints, follows, notes), limits), places[tip][1]
         places = _all_places(above, places)
     except ParameterError:
         raise
     except ValueError as error:
         raise ValueError(f"{name}: {error}") from None
-    for joint in held:
-        leader, _, offset = follows[joint.name]
-        held_at = f"joint {joint.name!r} is held at {offset:g} {'m' if joint.type == 'prismatic' else 'rad'}"
-        reason = f"it mimics {leader!r}, which does not move between base and tip"
-        warnings.warn(f"{name}: {held_at}: {reason}", stacklevel=4)
     return joints, frame, places
+
+
+def own_bounds(limits: JointLimits | None) -> Collection[str]:
+    """Names of the bounds that the limits replace."""
+    return limits.given.keys() if limits is not None else ()
+
+
+def warn(path: str | os.PathLike[str], notes: Iterable[str], level: int) -> None:
+    """Issue a warning for each note about a file, for the caller `level` functions up."""
+    for note in notes:
+        warnings.warn(f"{os.fsdecode(path)}: {note}", UrdfWarning, stacklevel=level)
+
+
+@contextmanager
+def or_else(remedy: str) -> Iterator[None]:
+    """Add a remedy to the message of an error."""
+    try:
+        yield
+    except ParameterError:
+        raise
+    except ValueError as error:
+        raise ValueError(f"{error}, or {remedy}") from None
 
 
 def tree_of(links: Iterable[str], joints: Iterable[UrdfJoint]) -> Tree:
@@ -83,9 +120,14 @@ def tree_of(links: Iterable[str], joints: Iterable[UrdfJoint]) -> Tree:
 
 def listed(names: Iterable[str]) -> str:
     """Names for a message, at most 12."""
-    shown = list(map(repr, names))
+    return first(map(repr, names)) or "none"
+
+
+def first(parts: Iterable[str]) -> str:
+    """Parts of a message, at most 12."""
+    shown = list(parts)
     more = [f"{len(shown) - 12} more"] if len(shown) > 12 else []
-    return ", ".join(shown[:12] + more) or "none"
+    return ", ".join(shown[:12] + more)
 
 
 def _branch(above: Tree, tip: str, base: str | None) -> list[UrdfJoint]:
@@ -133,7 +175,7 @@ def follows_of(branch: Iterable[UrdfJoint], mimics: Mapping[str, Follow | None])
     """For each mimic joint of the chain: the last leader, which is not a mimic joint."""
     follows = {}
     for joint in branch:
-        if joint.type == "fixed" or joint.mimic is None:
+        if joint.type == "fixed" or mimics[joint.name] is None:
             continue
         leader, ratio, offset = joint.name, 1.0, 0.0
         passed: list[str] = []
@@ -152,42 +194,70 @@ def follows_of(branch: Iterable[UrdfJoint], mimics: Mapping[str, Follow | None])
                 raise ValueError(f"joint {joint.name!r}: {row}: must be fewer: let each mimic the last leader")
         if not (0.0 < abs(ratio) < inf and abs(offset) < 1e100):
             by = f"ratio {ratio:g} and offset {offset:g}"
-            raise ValueError(f"joint {joint.name!r} mimics {leader!r} by {by}: must be finite, the ratio not zero")
+            required = "must be finite, the ratio not zero: correct multiplier and offset"
+            raise ValueError(f"joint {joint.name!r} mimics {leader!r} by {by}: {required}")
         follows[joint.name] = (leader, ratio, offset)
     return follows
 
 
-def _chain(branch: list[UrdfJoint], follows: Mapping[str, Follow]) -> tuple[list[Joint], Places, list[UrdfJoint]]:
-    """The moving joints, the places of the links of the chain, and the fixed mimic joints."""
-    moving = {joint.name for joint in branch if joint.type != "fixed"}
+def _chain(
+    branch: list[UrdfJoint], follows: Mapping[str, Follow], own: Collection[str], notes: list[str]
+) -> tuple[list[Joint], Places]:
+    """The moving joints, and the places of the links of the chain."""
+    held = without_range((joint for joint in branch if joint.name not in follows), own, notes)
+    moving = {joint.name for joint in branch if joint.type != "fixed" and joint.name not in held}
     joints: list[Joint] = []
-    held = []
     frame = frame_at()
     places: Places = {branch[0].parent: (0, frame)}
     for joint in branch:
         if joint.type not in TYPES:
-            raise ValueError(f"joint {joint.name!r}: type = {joint.type!r}: must be {', '.join(TYPES[:-1])} or fixed")
+            problem = f"type = {joint.type!r}: must be {', '.join(TYPES[:-1])} or fixed"
+            raise ValueError(f"joint {joint.name!r}: {problem}: correct the type")
         frame = frame @ pose(joint.xyz, joint.rpy)
         if joint.type != "fixed":
-            leader, _, offset = follows.get(joint.name, (joint.name, 1.0, 0.0))
+            leader, ratio, offset = follows.get(joint.name, (joint.name, 1.0, 0.0))
             if leader in moving:
-                joints.append(chain_joint(joint, frame))
+                joints.append(chain_joint(joint, frame, own, leader != joint.name))
                 frame = frame_at()
             else:
-                held.append(joint)
-                frame = frame @ step_of(joint, offset)
+                position = ratio * held.get(leader, 0.0) + offset
+                frame = frame @ step_of(joint, position)
+                if leader not in held:
+                    reason = f"it mimics {leader!r}, which does not move between base and tip"
+                    notes.append(f"joint {joint.name!r} is held at {position:g} {unit_of(joint)}: {reason}")
         places[joint.child] = (len(joints), frame)
     if not joints:
-        names = listed(joint.name for joint in held)
+        names = listed(joint.name for joint in branch if joint.type != "fixed")
+        if held:
+            raise ValueError(f"all joints between base and tip are fixed, because lower = upper: {names}: {FREE}")
         problem = f"all joints between base and tip mimic joints elsewhere: {names}"
-        raise ValueError(f"{problem}: at least one joint must have a drive: give another base or tip")
-    return joints, places, held
+        raise ValueError(f"{problem}: at least one joint must have a drive")
+    return joints, places
+
+
+def without_range(joints: Iterable[UrdfJoint], own: Collection[str], notes: list[str]) -> dict[str, float]:
+    """Positions of the joints that their bounds fix, by name."""
+    fixed = {}
+    said = []
+    for joint in joints:
+        lower, upper = (joint.limit.get(name, 0.0) for name in ("lower", "upper"))  # Defaults of the URDF format.
+        if joint.type in ("revolute", "prismatic") and lower == upper and not {"lower", "upper"} & set(own):
+            fixed[joint.name] = lower
+            said.append(f"{joint.name!r} at {lower:g} {unit_of(joint)}")
+    if said:
+        notes.append(f"joints are fixed, because lower = upper, which are 0 if missing: {first(said)}: {FREE}")
+    return fixed
+
+
+def unit_of(joint: UrdfJoint) -> str:
+    return "m" if joint.type == "prismatic" else "rad"
 
 
 def step_of(joint: UrdfJoint, position: float) -> Array:
     """Transform of a joint at a position."""
-    if not np.any(joint.axis):
-        raise ValueError(f"joint {joint.name!r}: axis = 0 0 0: must be a nonzero vector")
+    if position == 0.0:
+        return frame_at()
+    require_axis(joint)
     along = position * np.array(joint.axis) / np.linalg.norm(joint.axis)
     return frame_at(p=along) if joint.type == "prismatic" else frame_at(R=rotation(along))
 
@@ -223,23 +293,31 @@ def frame_at(p: ArrayLike = 0.0, R: ArrayLike = ((1, 0, 0), (0, 1, 0), (0, 0, 1)
     return T
 
 
-def chain_joint(joint: UrdfJoint, placement: Array) -> Joint:
-    """A moving joint with its bounds. Raises ValueError if the bounds are invalid."""
+def require_axis(joint: UrdfJoint) -> None:
     if not np.any(joint.axis):
-        raise ValueError(f"joint {joint.name!r}: axis = 0 0 0: must be a nonzero vector")
-    # Defaults of the URDF format.
-    limit: dict[str, Any] = {"lower": 0.0, "upper": 0.0, "acceleration": inf, "jerk": inf, **joint.limit}
+        raise ValueError(f"joint {joint.name!r}: axis = 0 0 0: must be a nonzero vector: correct the axis")
+
+
+def chain_joint(joint: UrdfJoint, placement: Array, own: Collection[str] = (), follows: bool = False) -> Joint:
+    """A moving joint with its bounds, except the bounds in `own`. Raises ValueError if the bounds are invalid.
+
+    follows: whether the joint is a mimic joint, whose range coupled_joints() checks.
+    """
+    require_axis(joint)
+    given = {name: value for name, value in joint.limit.items() if value != 0.0 or name in ("lower", "upper")}
+    limit: dict[str, Any] = {**NO_BOUNDS, "lower": 0.0, "upper": 0.0, **given}  # Defaults of the URDF format.
     if joint.type == "continuous":
-        limit = {"velocity": inf, **limit, "lower": -inf, "upper": inf}
-    if "velocity" not in limit:
-        raise ValueError(f'joint {joint.name!r} is {joint.type}: must have <limit velocity="...">')
+        limit |= {"lower": -inf, "upper": inf}
+    if not {"velocity_offset", "deceleration"} & set(own):
+        limit |= _envelope(joint)
+    limit |= {name: NO_BOUNDS[name] for name in own}
     lower, upper = limit["lower"], limit["upper"]
-    if lower >= upper:
-        raise ValueError(f"joint {joint.name!r}: lower = {lower:g}: must be below upper = {upper:g}")
-    limit |= _envelope(joint)
+    if lower >= upper and not follows:
+        raise ValueError(f"joint {joint.name!r}: lower = {lower:g}: must be below upper = {upper:g}: {OWN_RANGE}")
     for what in ("velocity", "acceleration", "jerk"):
-        if limit[what] <= 0.0:
-            raise ValueError(f"joint {joint.name!r}: {what} = {limit[what]:g}: must be positive")
+        if limit[what] < 0.0:
+            problem = f"{what} = {limit[what]:g}: must be positive: give limits=fp.JointLimits({what}=...)"
+            raise ValueError(f"joint {joint.name!r}: {problem}")
     return Joint(str(joint.type), placement, joint.axis, **limit, name=joint.name)
 
 
@@ -249,26 +327,31 @@ def _envelope(joint: UrdfJoint) -> dict[str, float]:
         return {}
     offset, deceleration = (joint.envelope.get(name) for name in ENVELOPE)
     if offset is None or deceleration is None or offset < 0.0 or deceleration <= 0.0:
-        needs = "must have velocity_offset, not negative, and deceleration_limit, positive"
+        needs = "must have velocity_offset, not negative, and deceleration_limit, positive: correct the numbers"
         raise ValueError(f"joint {joint.name!r}: <position_based_velocity_limits>: {needs}")
     return {"velocity_offset": offset, "deceleration": deceleration}
 
 
-def coupled_joints(joints: list[Joint], follows: Mapping[str, Follow]) -> list[Joint]:
-    """The joints with their mimics, and each leader bounded so that its mimic joints keep their own bounds."""
+def coupled_joints(joints: list[Joint], follows: Mapping[str, Follow], notes: list[str]) -> list[Joint]:
+    """The joints with their mimics, and each leader bounded so that its mimic joints keep their own bounds.
+
+    The range of a mimic joint that leaves no range for the leader is removed.
+    """
     coupled = list(joints)
     index = {joint.name: i for i, joint in enumerate(joints)}
+    said = []
     for i, follower in enumerate(joints):
         if follower.name not in follows:
             continue
         name, ratio, offset = follows[follower.name]
-        coupled[i] = replace(follower, mimic=(index[name], ratio, offset))
         leader = coupled[index[name]]
         ends = sorted(((follower.lower - offset) / ratio, (follower.upper - offset) / ratio))
         lower, upper = max(leader.lower, ends[0]), min(leader.upper, ends[1])
-        if lower >= upper:
-            problem = f"lower = {lower:g} by the bounds of its mimic joints: must be below upper = {upper:g}"
-            raise ValueError(f"joint {name!r}: {problem}: widen the bounds, or correct ratio and offset")
+        if lower >= upper or follower.lower >= follower.upper:
+            said.append(f"{follower.name!r} of {name!r}")
+            lower, upper = leader.lower, leader.upper
+            follower = replace(follower, lower=-inf, upper=inf)
+        coupled[i] = replace(follower, mimic=(index[name], ratio, offset))
         coupled[index[name]] = replace(
             leader,
             type="revolute" if leader.type == "continuous" and upper < inf else leader.type,
@@ -278,4 +361,7 @@ def coupled_joints(joints: list[Joint], follows: Mapping[str, Follow]) -> list[J
             acceleration=min(leader.acceleration, follower.acceleration / abs(ratio)),
             jerk=min(leader.jerk, follower.jerk / abs(ratio)),
         )
+    if said:
+        problem = "ranges of mimic joints are ignored, because they leave no range for the joint that leads them"
+        notes.append(f"{problem}: {first(said)}")
     return coupled

@@ -11,15 +11,30 @@ from typing import Any
 import numpy as np
 
 from .._core import MAX_DOF
-from .._types import Array
-from ..arms import Joint
+from ..arms import Joint, JointLimits, limited
 from ..errors import ParameterError, not_one_of, wrong
 from ..robots import NamedFrame, TreeJoint
-from .urdf import Places, Tree, chain_joint, coupled_joints, follows_of, frame_at, pose, step_of, tree_of
+from .urdf import (
+    FREE,
+    Places,
+    Tree,
+    chain_joint,
+    coupled_joints,
+    follows_of,
+    frame_at,
+    listed,
+    or_else,
+    own_bounds,
+    pose,
+    step_of,
+    tree_of,
+    without_range,
+)
 from .urdf_file import Mass, UrdfJoint, read_robot_with_masses
 
 TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 BASES = ("fixed", "planar")
+FIX = "fix the joint by locked= or tips="
 
 
 def read_tree(
@@ -28,8 +43,10 @@ def read_tree(
     base: str | None = None,
     locked: Mapping[str, float] | None = None,
     tips: Iterable[str] | None = None,
+    limits: JointLimits | None = None,
+    notes: list[str] | None = None,
 ) -> dict[str, Any]:
-    """The arguments of a Robot; see Robot.from_urdf()."""
+    """The arguments of a Robot; see Robot.from_urdf(). notes: list for the texts of warnings."""
     name = os.fsdecode(path)
     if base is not None and base not in BASES:
         raise not_one_of("base", base, BASES)
@@ -37,7 +54,7 @@ def read_tree(
         links, every, masses = read_robot_with_masses(name)
         above = tree_of(links, every)
         held = _held(above, every, dict(locked or {}), tips)
-        return _robot(above, every, masses, held, base)
+        return _robot(above, every, masses, held, base, limits, [] if notes is None else notes)
     except ParameterError:
         raise
     except ValueError as error:
@@ -54,10 +71,11 @@ def _held(
             close = difflib.get_close_matches(name, list(joints)[:300])
             hint = f", perhaps {' or '.join(map(repr, close))}" if close else ""
             raise wrong("locked", name, f" has {name!r}: must be names of joints that move{hint}")
-        if (mimic := joints[name].mimic) is not None:
+        mimic = joints[name].mimic
+        if mimic is not None and _leads_to_drive(joints, name):
             raise wrong("locked", name, f" has {name!r}, which mimics {mimic[0]!r}: lock the leader")
         low, high = _range(joints[name])
-        if not low <= position <= high:
+        if low < high and not low <= position <= high:
             raise ParameterError(
                 "locked", None, position, f"locked[{name!r}] = {position:g}: must be from {low:g} to {high:g}"
             )
@@ -65,10 +83,22 @@ def _held(
     if tips is not None:
         needed = _needed(above, joints, [tips] if isinstance(tips, str) else list(tips))
         for name, joint in joints.items():
-            if name not in needed and joint.mimic is None and joint.type != "fixed":
+            if name not in needed and joint.type != "fixed" and not (joint.mimic and _leads_to_drive(joints, name)):
                 low, high = _range(joint)
                 held.setdefault(name, min(max(0.0, low), high))
     return held
+
+
+def _leads_to_drive(joints: Mapping[str, UrdfJoint], name: str) -> bool:
+    """Whether the leaders of a mimic joint exist, up to a joint that has a drive."""
+    for _ in range(MAX_DOF + 1):
+        mimic = joints[name].mimic
+        if mimic is None:
+            return True
+        name = mimic[0]
+        if name not in joints:
+            return False
+    return False
 
 
 def _needed(above: Tree, joints: Mapping[str, UrdfJoint], tips: list[str]) -> set[str]:
@@ -115,9 +145,25 @@ def _depth_first(above: Tree) -> Iterator[UrdfJoint]:
 
 
 def _robot(
-    above: Tree, every: list[UrdfJoint], masses: Mapping[str, Mass], held: Mapping[str, float], base: str | None
+    above: Tree,
+    every: list[UrdfJoint],
+    masses: Mapping[str, Mass],
+    held: dict[str, float],
+    base: str | None,
+    limits: JointLimits | None,
+    notes: list[str],
 ) -> dict[str, Any]:
-    follows = follows_of(every, {joint.name: joint.mimic for joint in every})
+    own = own_bounds(limits)
+    names = {joint.name for joint in every}
+    lost = [joint.name for joint in every if joint.name not in held and joint.mimic and joint.mimic[0] not in names]
+    if lost:
+        problem = "must mimic a joint of the file: fix the joints by locked= or tips=, or correct the names"
+        raise ValueError(f"joints mimic joints that do not exist: {listed(lost)}: {problem}")
+    with or_else(FIX):
+        follows = follows_of(every, {joint.name: None if joint.name in held else joint.mimic for joint in every})
+    free = [joint for joint in every if joint.name not in held and joint.name not in follows]
+    fixed = without_range(free, own, notes)
+    held = {**held, **fixed}
     joints = _planar_base() if base == "planar" else []
     parents = list(range(len(joints)))
     root = next(link for link, joint in above.items() if joint is None)
@@ -134,16 +180,21 @@ def _robot(
             if leader in held:
                 frame = frame @ step_of(joint, ratio * held[leader] + offset)
             else:
-                joints.append(_moving_joint(joint, frame))
+                with or_else(FIX):
+                    joints.append(chain_joint(joint, frame, own, leader != joint.name))
                 parents.append(number)
                 number, frame = len(joints), frame_at()
         places[joint.child] = (number, frame)
-    if not 1 <= len(joints) <= MAX_DOF:
-        raise ValueError(
-            f"{len(joints) or 'no'} joints move: must be 1 to {MAX_DOF}; fix the other joints by locked= or tips="
+    if not joints:
+        remedy = (
+            f"{FREE}, or if the base moves, give base='planar'" if fixed else "if the base moves, give base='planar'"
         )
+        raise ValueError(f"no joints move: must be 1 to {MAX_DOF}: {remedy}")
+    if len(joints) > MAX_DOF:
+        raise ValueError(f"{len(joints)} joints move: must be 1 to {MAX_DOF}; fix the other joints by locked= or tips=")
     moving = {joint.name for joint in joints}
-    coupled = coupled_joints(joints, {name: follow for name, follow in follows.items() if name in moving})
+    followers = {name: follow for name, follow in follows.items() if name in moving}
+    coupled = limited(coupled_joints(joints, followers, notes), limits)
     weights = _weights(places, masses, len(joints) + 1)
     return {
         "joints": [
@@ -154,13 +205,6 @@ def _robot(
         "base_mass": weights[0].mass,
         "base_center": weights[0].center,
     }
-
-
-def _moving_joint(joint: UrdfJoint, frame: Array) -> Joint:
-    try:
-        return chain_joint(joint, frame)
-    except ValueError as error:
-        raise ValueError(f"{error}, or be in locked=") from None
 
 
 def _weights(places: Places, masses: Mapping[str, Mass], count: int) -> list[Mass]:

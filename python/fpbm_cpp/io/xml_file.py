@@ -10,6 +10,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
+from ..errors import wrong
+
 MAX_BYTES = 16 * 2**20
 MAX_ELEMENTS = 50_000
 MAX_DEPTH = 64
@@ -62,6 +64,9 @@ class Element:
 
 def read_xml(path: str | os.PathLike[str], kept: Kept) -> Element:
     """Read the kept elements of a file whose root is <robot>. Raises ValueError if the file is invalid."""
+    if isinstance(path, str) and path.lstrip().startswith("<"):
+        problem = f" = {cut(path.lstrip())!r}: must be the name of a file, not XML text: write the text to a file"
+        raise wrong("path", path, problem)
     with open(path, "rb") as file:
         xml = file.read(MAX_BYTES + 1)
     if len(xml) > MAX_BYTES:

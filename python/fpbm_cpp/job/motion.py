@@ -16,7 +16,7 @@ from tomlkit.exceptions import TOMLKitError
 
 from .._core import check_sweep
 from .._types import Array
-from ..arms import Arm, JointLimits, PlanarArm
+from ..arms import Arm, JointLimits, PlanarArm, SerialArm
 from ..clearance import Clearance
 from ..errors import not_one_of, wrong
 from ..io import write_whole
@@ -35,6 +35,7 @@ from .sections import (
     JobError,
     RunOptions,
     Table,
+    arm_of,
     in_order,
     job_errors,
     known,
@@ -44,7 +45,8 @@ from .sections import (
 )
 
 # Ready postures with the hand down [rad]: the maker's for Franka; 30° -90° 60° for the iiwa 14; the maker's home for
-# Kinova; right angles for UR.
+# Kinova; right angles for UR; -20° 40° 60° for the xArm 7; -20° 40° 70° for the SO-101. The posture of the Z1 is
+# "forward" of Unitree's SDK, with the hand to the front.
 READY = {
     "panda": [0.0, -0.7854, 0.0, -2.3562, 0.0, 1.5708, 0.7854],
     "fr3": [0.0, -0.7854, 0.0, -2.3562, 0.0, 1.5708, 0.7854],
@@ -52,12 +54,18 @@ READY = {
     "gen3": [0.0, 0.2618, 3.1416, -2.2689, 0.0, 0.9599, 1.5708],
     "ur5e": [0.0, -1.5708, 1.5708, -1.5708, -1.5708, 0.0],
     "ur10e": [0.0, -1.5708, 1.5708, -1.5708, -1.5708, 0.0],
+    "xarm7": [0.0, -0.3491, 0.0, 0.6981, 0.0, 1.0472, 0.0],
+    "so101": [0.0, -0.3491, 0.6981, 1.2217, 0.0],
+    "z1": [0.0, 1.5, -1.0, -0.54, 0.0, 0.0],
 }
 READY["two_pandas"] = 2 * READY["panda"]
 
 # Displacement of the joints of an unknown arm, in either direction or zero [rad]; at most a quarter of their range.
 BEND = 1.0
 TIP_TASKS = ("position", "pose")
+# Tasks of an arm in space that has too few joints for a pose, but more than for a position.
+FEW = range(4, 6)
+FEW_TASKS = ({"level": 0, "kind": "position"}, {"level": 1, "kind": "axis"})
 MOST = 3**7  # Largest number of candidate postures.
 GOOD = 0.8  # Accepted inverse condition number, relative to the best.
 
@@ -138,7 +146,7 @@ class Motion:
 def prepare(job: Table) -> Motion:
     """Construct the motion of a job. Raises JobError, or OSError if a file that the job names cannot be read."""
     require_sound(job)
-    arm = make("arm", job["arm"])
+    arm = arm_of(job)
     full = filled(job, arm)
     full = {section: in_order(section, full[section]) for section in SECTIONS if section in full}
     path, scheme, options = (make(section, full[section], arm) for section in ("path", "scheme", "run"))
@@ -147,7 +155,8 @@ def prepare(job: Table) -> Motion:
     if limits is not None and "acceleration" not in full["limits"]:
         bounded = np.isfinite([limits.lower, limits.upper, limits.velocity]).any(axis=0)
         if np.any(bounded & np.isinf(limits.acceleration)):
-            missing = ": is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is usual"
+            missing = ": is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is usual, for example "
+            missing += "--limit-acceleration 10, or acceleration = 10 under [limits] in a job"
             raise JobError(wrong("limits.acceleration", None, missing))
     clearance = make("clearance", full["clearance"], arm) if "clearance" in full else None
     bounds = make("bounds", full.get("bounds", []), arm)
@@ -165,6 +174,7 @@ def prepare(job: Table) -> Motion:
 
 def filled(job: Table, arm: Arm | Robot) -> Table:
     """The job with the defaults for missing keys."""
+    job = with_tasks(job, arm)
     path = job.get("path", {"kind": FREE["path"]})
     pieces = {task: _filled_paths(each, arm) for task, each in _by_task(path).items()}
     pieces = pieces if is_by_task(path) else pieces[""]
@@ -201,11 +211,24 @@ def filled(job: Table, arm: Arm | Robot) -> Table:
     return full
 
 
+def with_tasks(job: Table, arm: Arm | Robot) -> Table:
+    """The job; for an arm with few joints and without a task, tasks for the tip's position and the direction of its z
+    axis, with the gains of the scheme.
+    """
+    if "task" in job or "task" in job.get("run", {}) or not isinstance(arm, SerialArm) or arm.dof not in FEW:
+        return job
+    scheme = dict(job.get("scheme", {"kind": FREE["scheme"]}))
+    gains = {key: scheme.pop(key) for key in ("k1", "k2", "k") if key in scheme}
+    return {**job, "scheme": scheme, "task": [{**each, **gains} for each in FEW_TASKS]}
+
+
 def taken(job: Table, full: Table) -> dict[str, list[str]]:
     """Defaults in the full job by section, for example 'k1 = 10', without options that are off."""
     texts = {
         section: [*dict.fromkeys(_taken(job.get(section, {}), full[section]))] for section in ("path", "scheme", "run")
     }
+    if "task" in full and "task" not in job:
+        texts["run"].insert(0, "tasks " + " and ".join(each["kind"] for each in full["task"]))
     return {section: each for section, each in texts.items() if each}
 
 

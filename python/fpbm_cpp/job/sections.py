@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from math import inf
 from typing import Any
 
 from .._types import OptionalArrayField
-from ..arms import Arm, JointLimits
+from ..arms import Arm, JointLimits, SerialArm
 from ..clearance import CLEARANCES, Clearance
 from ..errors import ParameterError, suggestion, wrong
 from ..parameter import NOT_NEGATIVE, POSITIVE, Data, Parameter, data, parameter
@@ -116,6 +117,26 @@ def make(section: str, said: Any, arm: Arm | Robot | None = None) -> Any:
     """Object of a section, for this arm. Raises JobError."""
     with job_errors():
         return from_table(_whole(section, said, arm), SECTIONS[section], section)
+
+
+def arm_of(job: Table) -> Arm | Robot:
+    """The arm of a job. The limits of a job replace bounds of a URDF file before the bounds are checked, unless the job
+    has a clearance from a URDF file, whose joints must be the joints of the arm. Raises JobError.
+    """
+    said, limits = dict(job["arm"]), job.get("limits")
+    kind = said.pop("kind")
+    if not limits or kind not in ("urdf", "robot") or "file" in job.get("clearance", {}):
+        arm: Arm | Robot = make("arm", job["arm"])
+        return arm
+    with job_errors():
+        own = JointLimits(**limits)
+        read = partial(SerialArm.from_urdf, tip=said.pop("tip", "")) if kind == "urdf" else Robot.from_urdf
+        try:
+            return read(said.pop("file"), **said, limits=own)
+        except ParameterError as error:
+            raise error.within("arm") from None
+        except ValueError as error:
+            raise wrong("arm", None, f": {error}") from None
 
 
 def _whole(section: str, said: Any, arm: Arm | Robot | None = None) -> Any:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .._core import failed, rollout
-from ..arms import Arm, JointLimits
+from ..arms import Arm, JointLimits, limits_of
 from ..clearance import Clearance
 from ..errors import ResolutionError, not_one_of, require, wrong
 from ..paths import Path
@@ -144,7 +144,7 @@ def track(
     name, kind, followed, others = task_and_paths(path, task, stack)
     require("bounds", bounds, Iterable, "TaskBounds in a sequence")
     limited = LimitOptions(
-        limits,
+        limits_of(arm, limits),
         error_bound,
         integral_gain,
         integral_bound,

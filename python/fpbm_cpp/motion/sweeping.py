@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .._core import Status, check_sweep, failed, not_run
 from .._types import Array
-from ..arms import Arm, JointLimits
+from ..arms import Arm, JointLimits, limits_of
 from ..errors import SweepInterrupted, extra, wrong
 from ..paths import Path
 from ..robots import Robot
@@ -183,6 +183,7 @@ def sweep(
     if workers is not None and workers < 1:
         raise wrong("workers", workers, f" = {workers}: must be at least 1")
     name, kind = path_task(task, stack)
+    limits = limits_of(arm, limits)
     limited = LimitOptions(
         limits, error_bound, integral_gain, integral_bound, stall_time, singular_radius, singular_brake, null_damping
     )

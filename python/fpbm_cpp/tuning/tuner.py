@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arms import Arm, JointLimits
+from ..arms import Arm, JointLimits, limits_of
 from ..errors import TuneInterrupted
 from ..motion.run import Paths, Run
 from ..motion.simulation import one_path, path_task
@@ -127,7 +127,7 @@ def tune(
     if not isinstance(first, FPBM):
         raise TypeError(f"baseline: must be an FPBM, got {type(first).__name__}")
     space = Space(search, first, arm.dof)
-    name, unit, of_run = measure(objective, limits or arm.limits)
+    name, unit, of_run = measure(objective, limits_of(arm, limits) or arm.limits)
     require_cmaes()
     tried: list[Trials] = []
 

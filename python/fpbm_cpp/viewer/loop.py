@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from .._core import Status, TargetFilter, Tick, Tracker
 from .._types import Array
-from ..arms import Arm, JointLimits
+from ..arms import Arm, JointLimits, limits_of
 from ..clearance import Clearance
 from ..robots import Robot
 from ..schemes import Scheme
@@ -60,7 +60,7 @@ class ServoLoop:
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         self.arm, self.stack, self.dt = arm, stack, dt
-        self.limits = arm.limits if limits is None else limits
+        self.limits = limits_of(arm, limits) or arm.limits
         self._task, self._scheme, self._clock, self._lock = task, scheme, clock, threading.RLock()
         self._q0 = np.array(q0, dtype=float)
         self._obstacles, self.bounds = Obstacles(clearance, dt), tuple(bounds)

@@ -52,7 +52,7 @@ namespace {
   fpbm::Joint<> joint{type_of(described), placement, {described.axis.x, described.axis.y, described.axis.z}};
   joint.name = described.name;
   if (described.limits) {
-    joint.bounds.velocity = described.limits->velocity;
+    if (described.limits->velocity != 0.0) joint.bounds.velocity = described.limits->velocity;  // 0: not given.
     if (joint.type != fpbm::JointType::kContinuous) {
       joint.bounds.lower = described.limits->lower;
       joint.bounds.upper = described.limits->upper;

@@ -43,8 +43,8 @@ constexpr int kPerLevel = Stack::kTasks / Stack::kLevels;
   for (std::size_t k = 0; k < tasks.size(); ++k) {
     const MotionTask& task = tasks[k];
     all[static_cast<std::size_t>(places[k])] =
-        fpbm::AnyFrameTask(fpbm::FrameCoordinates::kPose, task.frame, task.gains, {true, true, true, true, true, true},
-                           false, {0.0, 0.0, 1.0}, task.reference);
+        fpbm::AnyFrameTask(task.coordinates, task.frame, task.gains, {true, true, true, true, true, true}, false,
+                           {0.0, 0.0, 1.0}, task.reference);
   }
   const auto level = [&all](std::size_t k) {
     const std::size_t first = k * static_cast<std::size_t>(kPerLevel);
@@ -81,9 +81,9 @@ class StackMotion final : public Motion {
       : scheme_(settings.scheme),
         options_(settings.options),
         limits_(settings.limits),
-        places_(places_of(settings.tasks)),
+        parts_(parts_of(settings.tasks)),
         tasks_(Robot(settings.tree), stack_of(settings.tasks)),
-        filters_(places_.size(), Filter(fpbm::Transform<>{}, settings.bounds, settings.filter)) {
+        filters_(settings.tasks.back().target + 1, Filter(fpbm::Transform<>{}, settings.bounds, settings.filter)) {
     const fpbm::TickOfGains<> tick{options_.dt, 0.0, settings.tasks.size() > 1};
     require_stable_tasks(settings.tasks, tick);
     fpbm::require_stable(scheme_from(Joints::Zero(tasks_.dof())), tick);
@@ -93,9 +93,10 @@ class StackMotion final : public Motion {
     const fpbm::State<kDof> start{q, Joints::Zero(q.size())};
     tracker_.emplace(tasks_, Space{}, scheme_from(q), start, options_, limits_);
     held_ = Reference::hold(tracker_->tip());
-    for (std::size_t k = 0; k < places_.size(); ++k) {
-      at_place(places_[k],
-               [&](auto i, int) noexcept { (void)filters_[k].reset(std::get<decltype(i)::value>(held_.x).at); });
+    for (const Part& part : parts_) {
+      at_place(part.place, [&](auto i, int) noexcept {
+        (void)filters_[part.target].reset(std::get<decltype(i)::value>(held_.x).at);
+      });
     }
   }
 
@@ -107,12 +108,17 @@ class StackMotion final : public Motion {
     const auto tick = tracker_->advance(references);
     for (auto& filter : filters_) filter.advance();
     report.status = tick.status;
-    for (std::size_t k = 0; k < places_.size(); ++k) {
-      at_place(places_[k], [&](auto i, int row) noexcept {
+    for (const Part& part : parts_) {
+      at_place(part.place, [&](auto i, int row) noexcept {
         constexpr auto kLevel = static_cast<std::size_t>(Stack::level(static_cast<int>(decltype(i)::value)));
-        report.tasks[k].scale = tick.scales[kLevel];
-        report.tasks[k].position_error = tick.error.segment<3>(row).norm();
-        report.tasks[k].orientation_error = tick.error.segment<3>(row + 3).norm();
+        TaskReport& its = report.tasks[part.target];
+        if (part.coordinates != fpbm::FrameCoordinates::kAxis) {
+          its.scale = tick.scales[kLevel];
+          its.position_error = tick.error.segment<3>(row).norm();
+        }
+        if (part.coordinates != fpbm::FrameCoordinates::kPosition) {
+          its.orientation_error = tick.error.segment<3>(row + 3).norm();
+        }
       });
     }
   }
@@ -123,13 +129,28 @@ class StackMotion final : public Motion {
 
   void locate(Report& report) const noexcept override {
     const Stack::Point at = tracker_->tip();
-    for (std::size_t k = 0; k < places_.size(); ++k) {
-      at_place(places_[k], [&](auto i, int) noexcept { report.tasks[k].at = std::get<decltype(i)::value>(at).at; });
+    for (const Part& part : parts_) {
+      at_place(part.place,
+               [&](auto i, int) noexcept { report.tasks[part.target].at = std::get<decltype(i)::value>(at).at; });
     }
   }
 
  private:
   using Filter = fpbm::TargetFilter<fpbm::Pose>;
+
+  /// A task of the stack.
+  struct Part {
+    int place;           ///< In the stack.
+    std::size_t target;  ///< Index of the filter.
+    fpbm::FrameCoordinates coordinates;
+  };
+
+  [[nodiscard]] static std::vector<Part> parts_of(const std::vector<MotionTask>& tasks) {
+    const std::vector<int> places = places_of(tasks);
+    std::vector<Part> parts;
+    for (std::size_t k = 0; k < tasks.size(); ++k) parts.push_back({places[k], tasks[k].target, tasks[k].coordinates});
+    return parts;
+  }
 
   [[nodiscard]] Scheme scheme_from(const Joints& start) const {
     return Scheme(fpbm::Balanced<kDof>(scheme_.alpha, scheme_.weights, null_space_of(scheme_, start)));
@@ -138,9 +159,9 @@ class StackMotion final : public Motion {
   /// The references of all tasks at a time in the next tick [s]; the references of empty places are held.
   [[nodiscard]] Reference ahead(double seconds) const noexcept {
     Reference all = held_;
-    for (std::size_t k = 0; k < places_.size(); ++k) {
-      const auto own = filters_[k].ahead(seconds);
-      at_place(places_[k], [&](auto i, int row) noexcept {
+    for (const Part& part : parts_) {
+      const auto own = filters_[part.target].ahead(seconds);
+      at_place(part.place, [&](auto i, int row) noexcept {
         std::get<decltype(i)::value>(all.x).at = own.x;
         all.xd.segment<6>(row) = own.xd;
         all.xdd.segment<6>(row) = own.xdd;
@@ -152,7 +173,7 @@ class StackMotion final : public Motion {
   MotionScheme scheme_;
   fpbm::TrackerOptions<> options_;
   fpbm::Limits<fpbm::Level::kAcceleration, kDof> limits_;
-  std::vector<int> places_;  ///< Place of each task in the stack.
+  std::vector<Part> parts_;
   Tasks tasks_;
   std::vector<Filter> filters_;
   std::optional<Tracker> tracker_;

@@ -102,7 +102,7 @@ void TargetController::read_parameters() {
   const fpbm::TargetBounds<> bounds{target.velocity,         target.acceleration,         target.jerk,
                                     target.angular_velocity, target.angular_acceleration, target.angular_jerk};
   const MotionSettings settings{tree, motion_tasks(tree), scheme(robot_->dof()), options, *limits_, bounds, filter};
-  motion_ = is_tip() ? make_tip_motion(settings) : make_stack_motion(settings);
+  motion_ = is_tip() && robot_->dof() >= fpbm::Pose::kRows ? make_tip_motion(settings) : make_stack_motion(settings);
 }
 
 fpbm::Tree<> TargetController::described() const {
@@ -128,8 +128,13 @@ std::vector<MotionTask> TargetController::motion_tasks(const fpbm::Tree<>& tree)
       const auto& [name, link, offset] = *frame++;
       return fpbm::LinkFrame<>(link, offset);
     };
-    MotionTask made{
-        task.name.empty() ? "scheme." : task.parameter(""), task.level, {task.k1, task.k2}, take(), std::nullopt};
+    const auto target = static_cast<std::size_t>(&task - tasks_.data());
+    MotionTask made{task.name.empty() ? "scheme." : task.parameter(""),
+                    task.level,
+                    {task.k1, task.k2},
+                    take(),
+                    std::nullopt,
+                    target};
     if (!task.reference.empty()) made.reference = take();
     const int other = made.reference ? made.reference->link() : 0;
     if (made.frame.link() == other) {
@@ -137,9 +142,17 @@ std::vector<MotionTask> TargetController::motion_tasks(const fpbm::Tree<>& tree)
       throw std::invalid_argument(task.frame_parameter() + ": no joint moves link '" + task.frame +
                                   "' relative to link '" + to + "': give two links with a joint between them");
     }
+    if (is_tip() && robot_->dof() < fpbm::Pose::kRows) {  // Too few joints for a pose: the position has priority.
+      made.coordinates = fpbm::FrameCoordinates::kPosition;
+      tasks.push_back(made);
+      made.coordinates = fpbm::FrameCoordinates::kAxis;
+      made.level = 1;
+      tasks.push_back(made);
+      return tasks;
+    }
     int& count = rows[static_cast<std::size_t>(task.level)];
     count += fpbm::Pose::kRows;
-    if (count > robot_->dof() && !is_tip()) {
+    if (count > robot_->dof()) {
       throw std::invalid_argument((task.name.empty() ? "tip_frame" : task.parameter("level")) +
                                   ": the poses of level " + std::to_string(task.level + 1) + " have " +
                                   std::to_string(count) + " rows, and the robot has " + std::to_string(robot_->dof()) +

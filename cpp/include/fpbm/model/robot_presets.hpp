@@ -47,10 +47,7 @@ inline void add(Tree<>& tree, const Row& row, int parent, const std::string& sid
   const bool opposite = mirrored && row.axis(1) == 0.0;  // Rotations about x and z change their sign.
   TreeJoint<> each;
   each.joint.name = side + row.name + "_joint";
-  each.joint.placement.p = mirror(row.origin);
-  each.joint.placement.R = rotation(Vector<3>(0.0, 0.0, sign * row.turn(2))) *
-                           rotation(Vector<3>(0.0, row.turn(1), 0.0)) *
-                           rotation(Vector<3>(sign * row.turn(0), 0.0, 0.0));
+  each.joint.placement = arms::placed(mirror(row.origin), {sign * row.turn(0), row.turn(1), sign * row.turn(2)});
   each.joint.axis = row.axis;
   each.joint.bounds = {opposite ? -row.upper : row.lower, opposite ? -row.lower : row.upper, row.velocity, 20.0};
   each.parent = parent;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <fpbm/any/any_frame_task.hpp>
 #include <fpbm/limits/limits.hpp>
 #include <fpbm/model/tree.hpp>
 #include <fpbm/objective/null_space.hpp>
@@ -17,13 +18,15 @@
 
 namespace fpbm_controllers {
 
-/// The pose of a frame, in the base frame or relative to another frame.
+/// The pose, the position or the z axis of a frame, in the base frame or relative to another frame.
 struct MotionTask {
   std::string gains_of;  ///< Prefix of the names of the gains in messages.
   int level;             ///< Task level, counted from 0.
   fpbm::TaskGains<> gains;
   fpbm::LinkFrame<> frame;
   std::optional<fpbm::LinkFrame<>> reference;
+  std::size_t target;  ///< Index of the target, a pose.
+  fpbm::FrameCoordinates coordinates = fpbm::FrameCoordinates::kPose;
 };
 
 /// The null-space motion of a robot, and the balance of the scheme.
@@ -84,9 +87,8 @@ class Motion {
   virtual void locate(Report& report) const noexcept = 0;
 };
 
-/// Motion of one tip by a tracker of a pose, in less than half of the time of a stack; also for robots with fewer than
-/// six joints. settings must have one task without a reference frame. Throws std::invalid_argument if a gain is too
-/// high for the tick.
+/// Motion of one tip by a tracker of a pose, in less than half of the time of a stack. settings must have one task, a
+/// pose without a reference frame. Throws std::invalid_argument if a gain is too high for the tick.
 [[nodiscard]] std::unique_ptr<Motion> make_tip_motion(const MotionSettings& settings);
 
 /// Motion of any tasks by a tracker of a stack. Throws std::invalid_argument if a gain is too high for the tick, or if
