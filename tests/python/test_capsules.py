@@ -460,7 +460,7 @@ with_robots = pytest.mark.skipif(ROBOTS is None or not ROBOTS.exists(), reason="
 @with_robots
 @pytest.mark.parametrize("mesh", ["hand", "link0", "link4", "link5", "link7"])
 def test_no_axis_has_a_smaller_volume_for_a_mesh(mesh: str) -> None:
-    points = read_mesh(ROBOTS / f"panda_description/meshes/collision/{mesh}.stl").reshape(-1, 3)
+    points = read_mesh(ROBOTS / f"panda_description/meshes/collision/{mesh}.stl")[0]
     hull = points[ConvexHull(points).vertices]
     assert volume([fit_capsule(points)]) <= dense_search(hull) * 1.001
 

@@ -42,12 +42,15 @@ def track(request: Request, out: Path | None, dark: bool, also: tuple[str, ...])
     with --tip. ARM can also be a robot: two_pandas, or a URDF file with a --task for each frame that follows the path.
     All options have defaults, and the defaults in use are printed. Separate several numbers by commas.
 
+    The arm keeps its joint limits, as in fpbm_cpp.track. With --no-limits, it moves by the scheme alone, as in
+    fpbm_cpp.simulate. With --job, it keeps limits if the job has limits, or with --limits.
+
     With --out, the folder gets run.png, run.npz, which fpbm_cpp.load reads, and job.toml, which contains all options.
     If the motion stops early, the exit status is 1, and the motion before the stop is still printed and written.
     """
     if also and out is None:
         raise click.UsageError("--also needs --out DIR.")
-    motion = request.motion()
+    motion = request.motion(limited=request.file is None)
     with request.plain():
         run = motion.run()
     request.say(motion)
@@ -115,7 +118,8 @@ def _row(kind: str, run: Run) -> Row:
     if not len(run.t):
         return [kind], "", {}
     figures = {name: of_run(run) for name, (_, _, of_run) in FIGURES.items()}
-    return [kind], "yes" if run.status else f"to {run.status.time:.3g} s", figures
+    done = "off its path" if run.status.left_path else "yes"
+    return [kind], done if run.status else f"to {run.status.time:.3g} s", figures
 
 
 @motion_command(
