@@ -6,14 +6,13 @@ from pathlib import Path
 
 import click
 
-from .._core import Status
 from ..errors import not_one_of
 from ..job.sections import job_errors
-from ..motion.run import Run
+from ..motion.comparison import comparison
 from ..schemes import SCHEMES
 from .plain import Writer, dark_option, import_viser, out_option, picture, write_files
 from .request import Request, motion_command
-from .text import FIGURES, Row, figure_table, summary
+from .text import summary
 
 port_option = click.option(
     "--port", type=click.IntRange(0, 65535), default=8080, help="Port of the page; 0 selects a free port."
@@ -98,13 +97,7 @@ def compare(request: Request, schemes: str | None, out: Path | None, dark: bool)
         runs = {kind: motion.run() for kind, motion in motions.items()}
     chosen = motions.get(request.scheme, motions[kinds[-1]])  # Usually, this motion has the options of all schemes.
     request.say(chosen, scheme=False)
-    remarks: dict[str, list[str]] = {}
-    for kind, run in runs.items():
-        if run.status.code is not Status.OK:
-            remarks.setdefault(" ".join(str(run.status).split()), []).append(kind)
-    rows = [_row(kind, run) for kind, run in runs.items()]
-    texts = [f"{', '.join(kinds)}: {text}" for text, kinds in remarks.items()]
-    click.echo(figure_table(["scheme"], run.kind, rows, texts))
+    click.echo(str(comparison(runs)))
     if out is not None:
         from ..plot import compare as figure
 
@@ -112,14 +105,6 @@ def compare(request: Request, schemes: str | None, out: Path | None, dark: bool)
         write_files(out, {"compare.png": picture(figure(runs, dark=dark)), **saved, "job.toml": chosen.save})
     if not any(run.status for run in runs.values()):
         raise click.ClickException("no motion is complete: the remarks above have the causes and remedies")
-
-
-def _row(kind: str, run: Run) -> Row:
-    if not len(run.t):
-        return [kind], "", {}
-    figures = {name: of_run(run) for name, (_, _, of_run) in FIGURES.items()}
-    done = "off its path" if run.status.left_path else "yes"
-    return [kind], done if run.status else f"to {run.status.time:.3g} s", figures
 
 
 @motion_command(

@@ -16,6 +16,7 @@ from ..arms import Arm, JointLimits
 from ..paths import Path
 from ..robots import Robot
 from ..schemes import Scheme
+from ..shown import html_table, number
 from ..skeleton import task_frames
 from ..tasks import FrameTask, PoseTask, PositionTask, Stack
 from .task_frames import task_jacobians
@@ -31,6 +32,7 @@ LIMITED = ("scale", "saturated", "clearance")  # Arrays of runs within joint lim
 OF_STACKS = ("scales", "task_errors")
 
 
+LONGEST = 200  # Characters of a scheme or a path in the HTML form of a run.
 ON_PATH = 1e-3  # Largest distance of the tip from its path in a complete motion [m].
 SHRINK = "Make the path smaller, or choose another start posture q0"
 REMEDIES = {
@@ -251,14 +253,17 @@ class Run:
         arrays = {name: getattr(self, name) for name in (*ARRAYS, *LIMITED, *OF_STACKS)}
         return {name: np.asarray(array) for name, array in arrays.items() if array is not None}
 
-    def plot(self, *, panels: Sequence[str] | None = None, dark: bool = False) -> Figure:
+    def plot(
+        self, *, panels: str | Sequence[str] | None = None, dark: bool = False, bounds: bool = False
+    ) -> Figure:
         """Figure of the motion on one page: arm snapshots, tip error, joints, limits, manipulability.
 
-        panels: names of other panels, from fpbm_cpp.plot.PANELS. dark: dark background. Needs matplotlib.
+        A notebook shows the figure. panels: names of other panels, from fpbm_cpp.plot.panels.PANELS. dark: dark
+        background. bounds: whether all finite bounds of the joints are shown. Needs matplotlib.
         """
         from ..plot import plot_run
 
-        return plot_run(self, panels=panels, dark=dark)
+        return plot_run(self, panels=panels, dark=dark, bounds=bounds)
 
     def view(self, *, urdf: str | os.PathLike[str] | None = None, **how: Any) -> None:
         """Show the motion in the browser until Ctrl-C; urdf, host, port, open_browser and errors as for view()."""
@@ -350,3 +355,19 @@ class Run:
             f"<Run of {len(self.t)} samples: {self.scheme!r} on {self.arm} along {self.path!r}; "
             f"largest tip error {self.max_error():.3g} m; {self.status}>"
         )
+
+    def _repr_html_(self) -> str:
+        rows = [
+            ["scheme", _brief(self.scheme)],
+            ["arm", str(self.arm)],
+            ["path", _brief(self.path)],
+            ["samples", len(self.t)],
+            ["largest tip error", f"{number(self.max_error())} m"],
+            ["status", str(self.status)],
+        ]
+        return html_table("Run", ["", ""], rows)
+
+
+def _brief(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= LONGEST else f"{text[:LONGEST]} …"
