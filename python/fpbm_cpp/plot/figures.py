@@ -39,11 +39,11 @@ def plot_run(
     """
     chosen = choose(run, panels)
     if title is None:
-        title = _title(run, 85 if len(_columns(chosen)[0]) > 1 else 42)
+        title = _title(run, 85 if len(_columns(chosen)[0]) > 1 else 42, 2 if len(chosen) > 1 else 1)
     return lay_out(run, title, chosen, DARK if dark else LIGHT, lettered=len(chosen) > 1, bounds=bounds)[0]
 
 
-def _title(run: Run, width: int) -> str:
+def _title(run: Run, width: int, lines_each: int) -> str:
     """Scheme and path, in lines of at most width characters, and the time of an early stop."""
 
     def short(part: object) -> str:
@@ -55,7 +55,7 @@ def _title(run: Run, width: int) -> str:
     lines = [whole] if len(whole) <= width else [short(run.scheme), along]
     if not run.status:
         lines.append(f"stopped after t = {run.status.time:g} s")
-    return "\n".join(row for line in lines for row in textwrap.wrap(line, width, max_lines=2, placeholder=" …"))
+    return "\n".join(row for line in lines for row in textwrap.wrap(line, width, max_lines=lines_each, placeholder=" …"))
 
 
 def lay_out(

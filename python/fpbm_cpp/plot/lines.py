@@ -12,7 +12,7 @@ from .theme import LINE, TEXT, Theme
 
 FOOT_ROW = 0.19  # Height of a row of the legend below all panels [in].
 TOP_ROW = 0.19  # Height of a row of a legend inside a panel, relative to the panel.
-PANEL_WIDTH = 2.9  # Width of a panel [in].
+PANEL_WIDTH = 3.05  # Width of a panel [in].
 SPANS = 400
 LEAST = float(np.finfo(float).eps)
 
