@@ -29,9 +29,9 @@ def number(value: float) -> str:
     return f"{value:.1e}" if 0.0 < abs(value) < 1e-3 else f"{value:.4g}"
 
 
-def short(values: Any) -> str:
-    """An array in one line, with three significant digits and at most twelve numbers."""
-    numbers = [f"{value:.3g}" for value in np.ravel(values)]
+def short(values: Any, decimals: int = 12) -> str:
+    """An array in one line, with three significant digits, these decimals, and at most twelve numbers."""
+    numbers = [f"{value:.3g}" for value in np.round(np.ravel(values), decimals) + 0.0]
     numbers = numbers if len(numbers) <= 12 else [*numbers[:12], "..."]
     return f"[{', '.join(numbers)}]"
 
@@ -47,20 +47,20 @@ def joint_table(caption: str, names: Sequence[str], types: Sequence[str], limits
 def _point(pose: Any) -> str:
     """The position of a point or of a pose."""
     pose = np.asarray(pose)
-    return short(pose[:3, 3] if pose.shape == (4, 4) else pose)
+    return short(pose[:3, 3] if pose.shape == (4, 4) else pose, 4)
 
 
 def _tracker(self: Tracker) -> str:
-    return f"<Tracker of {len(self.q)} joints: q = {short(self.q)}, tip at {_point(self.tip)}>"
+    return f"<Tracker of {len(self.q)} joints: q = {short(self.q, 4)}, tip at {_point(self.tip)}>"
 
 
 def _tick(self: Tick) -> str:
     scale = "" if self.scale is None else f", scale {self.scale:.3g}"
-    return f"<Tick: {self.status.name}{scale}, q = {short(self.q)}, error {short(self.error)}>"
+    return f"<Tick: {self.status.name}{scale}, q = {short(self.q, 4)}, error {short(self.error)}>"
 
 
 def _filter(self: TargetFilter) -> str:
-    return f"<TargetFilter: x at {_point(self.x)}, xd = {short(self.xd)}>"
+    return f"<TargetFilter: x at {_point(self.x)}, xd = {short(self.xd, 4)}>"
 
 
 def _follower(self: PathFollower) -> str:
