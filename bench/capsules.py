@@ -57,7 +57,7 @@ def solid(shapes: list[Shape], rng: np.random.Generator) -> np.ndarray:
     u = rng.normal(size=(400, 3))
     u /= np.linalg.norm(u, axis=1, keepdims=True)
     balls = [c + r * u for shape in shapes for c, r in zip(shape.centers, shape.radii)]
-    return np.vstack([shape.edges.reshape(-1, 3) for shape in shapes] + balls)
+    return np.vstack([shape.corners for shape in shapes] + balls)
 
 
 def union(capsules: list[Capsule], rng: np.random.Generator) -> float:

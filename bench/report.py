@@ -44,8 +44,6 @@ PYTHON = {
     "pink": "Pink (QP)",
     "mink": "Mink (QP)",
 }
-# The colours of Okabe and Ito, which most colour-blind people can distinguish.
-BLACK, ORANGE, SKY, GREEN, BLUE, VERMILION = "#000000", "#E69F00", "#56B4E9", "#009E73", "#0072B2", "#D55E00"
 
 Row = dict[str, Any]
 
@@ -372,6 +370,10 @@ def chart(results: Results, file: Path) -> None:
     matplotlib.use("Agg")
     from matplotlib import pyplot as plt
 
+    from fpbm_cpp.plot import OKABE_ITO
+    from fpbm_cpp.plot.theme import LIGHT
+
+    BLUE, ORANGE, GREEN, _, SKY, VERMILION, BLACK, _ = OKABE_ITO
     figure, ((steps, tail), (size, rate)) = plt.subplots(2, 2, figsize=(12, 9), layout="constrained")
 
     # Rows from C++ are above rows from Python. The text of each bar is its time.
@@ -389,11 +391,11 @@ def chart(results: Results, file: Path) -> None:
     steps.set_xlim(0.1, 1000)
     steps.set(xlabel="time of a step [µs]", title="FPBM, a whole Panda pose step")
 
-    styles = zip(("grey", BLUE, VERMILION, GREEN, ORANGE, SKY, "purple", BLACK, BLUE), "xos^Dv<*P")
+    styles = zip(LIGHT.styles(), "osD^v<>*P")
     columns = ("p50", "p99", "p99.9", "worst")
-    for row, (colour, marker) in zip((r for r in results.tails if r["caches"] == "warm"), styles):
+    for row, ((colour, dash), marker) in zip((r for r in results.tails if r["caches"] == "warm"), styles):
         label = row["name"].replace("/", " ")
-        tail.plot(columns, [row[c] / 1e3 for c in columns], color=colour, marker=marker, label=label)
+        tail.plot(columns, [row[c] / 1e3 for c in columns], color=colour, ls=dash, marker=marker, label=label)
     tail.set_yscale("log")
     tail.set(ylabel="time of a call [µs]", title="Latency of a call in a warm loop")
     tail.legend(fontsize=8)

@@ -42,16 +42,18 @@ def chart(results: Results, file: Path) -> None:
     matplotlib.use("Agg")
     from matplotlib import pyplot as plt
 
+    from fpbm_cpp.plot import OKABE_ITO
+
     figure, (by_joints, by_levels) = plt.subplots(1, 2, figsize=(10, 4), sharey=True, layout="constrained")
     for axes, lines, over, label, unit in (
         (by_joints, LEVELS, JOINTS, "joints", "levels"),
         (by_levels, JOINTS, LEVELS, "levels", "joints"),
     ):
-        for line, marker in zip(lines, "osD^"):
+        for line, marker, colour in zip(lines, "osD^", OKABE_ITO):
             pairs = [(n, line) if label == "joints" else (line, n) for n in over]
             times = [results.least(f"ticks/{joints}/{levels}/limited") for joints, levels in pairs]
             drawn = [(n, time / 1e3) for n, time in zip(over, times) if time]
-            axes.plot(*zip(*drawn), marker=marker, label=f"{line} {unit if line > 1 else unit[:-1]}")
+            axes.plot(*zip(*drawn), color=colour, marker=marker, label=f"{line} {unit if line > 1 else unit[:-1]}")
         axes.set(xlabel=label, ylim=(0, None), xticks=over)
         axes.legend(fontsize=8)
         axes.spines[["top", "right"]].set_visible(False)

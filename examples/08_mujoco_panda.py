@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import sys
 from dataclasses import dataclass, field
+from itertools import islice
 from math import pi
 from typing import Any
 
@@ -165,7 +166,7 @@ def report(motion: Motion) -> None:
 def draw(motion: Motion) -> Any:
     from matplotlib.figure import Figure
 
-    from fpbm_cpp.plot import OKABE_ITO
+    from fpbm_cpp.plot import LIGHT, OKABE_ITO
 
     real = ARM.limits
     q = (2 * np.array(motion.q[STEPS - 1 :: STEPS]) - real.upper - real.lower) / (real.upper - real.lower)
@@ -174,19 +175,19 @@ def draw(motion: Motion) -> Any:
 
     figure = Figure(figsize=(8.0, 9.0), dpi=150, layout="constrained")
     axes = figure.subplots(4, 1, sharex=True)
-    axes[0].semilogy(t, 1e3 * np.array(motion.tip), color="#D55E00", lw=1.2, label="position [mm]")
-    axes[0].semilogy(t, 1e3 * np.array(motion.orientation), color="#0072B2", lw=1.0, label="orientation [mrad]")
-    axes[0].axhline(1.0, color="0.5", lw=0.8, ls="--")
+    axes[0].semilogy(t, 1e3 * np.array(motion.tip), color=OKABE_ITO[5], lw=1.2, label="position [mm]")
+    axes[0].semilogy(t, 1e3 * np.array(motion.orientation), color=OKABE_ITO[0], lw=1.0, ls="--", label="orientation [mrad]")
+    axes[0].axhline(1.0, color="0.5", lw=0.8, ls="--", label="1 mm and 1 mrad")
     axes[0].set(ylabel="tip error", ylim=(1e-3, 3e3))
-    axes[0].legend(loc="lower center", bbox_to_anchor=(0.62, 0.02), frameon=False)
+    axes[0].legend(loc="lower center", bbox_to_anchor=(0.62, 0.0), frameon=False)
     torque = np.array(motion.torque) / np.array(TORQUE)
     for panel, rows, label in zip(axes[1:], (q, qd, torque), ("position", "velocity", "torque")):
-        for i, color in enumerate(OKABE_ITO[: ARM.dof]):
-            panel.plot(t, rows[:, i], color=color, lw=1.1, label=f"joint {i + 1}")
-        for bound in (-1, 1):
-            panel.axhline(bound, color="black", lw=0.8, ls="--")
+        for i, (color, dash) in enumerate(islice(LIGHT.styles(), ARM.dof)):
+            panel.plot(t, rows[:, i], color=color, ls=dash, lw=1.1, label=f"joint {i + 1}")
+        for bound, name in ((-1, None), (1, "bound")):
+            panel.axhline(bound, color="0.5", lw=0.8, ls="--", label=name)
         panel.set(ylabel=f"{label} / bounds", ylim=(-1.12, 1.12))
-    figure.legend(*axes[1].get_legend_handles_labels(), loc="outside lower center", ncols=ARM.dof, frameon=False)
+    figure.legend(*axes[1].get_legend_handles_labels(), loc="outside lower center", ncols=4, frameon=False)
     ends = [*PHASES.values(), END]
     for i, name in enumerate(PHASES):
         for panel in axes:

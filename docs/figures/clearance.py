@@ -22,6 +22,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgb
 
 import fpbm_cpp as fp
+from fpbm_cpp.plot import OKABE_ITO
 from fpbm_cpp.plot.animation import write_frames
 from fpbm_cpp.skeleton import link_frames
 from fpbm_cpp.viewer.gap import core, nearest_points
@@ -33,7 +34,7 @@ TOP = 0.15  # Height of the table [m].
 TABLE = fp.Cuboid(np.array([[1, 0, 0, 0.6], [0, 1, 0, 0], [0, 0, 1, TOP - 0.02], [0, 0, 0, 1.0]]), [0.28, 0.55, 0.02])
 X = 0.06 + PANDA.forward(START)[0, 3]
 POST = fp.Capsule(0, [X, 0, TOP], [X, 0, TOP + 0.35], 0.05, "post")
-LINK, WRONG, WORLD, GAP = "#8FB8DE", "#D55E00", "#E9B44C", "#B0307A"
+LINK, WRONG, WORLD, GAP = "#8FB8DE", OKABE_ITO[5], "#E9B44C", OKABE_ITO[6]
 TO_EYE = np.array([0.80, 0.25, 0.42]) / np.linalg.norm([0.80, 0.25, 0.42])
 RIGHT = np.cross([0.0, 0.0, 1.0], TO_EYE) / np.linalg.norm(np.cross([0.0, 0.0, 1.0], TO_EYE))
 VIEW = np.array([RIGHT, np.cross(TO_EYE, RIGHT)])  # Parallel projection: parallel lines stay parallel.
@@ -126,14 +127,15 @@ def film(clearance: fp.Clearance, runs: dict[str, fp.Run]) -> Iterator[np.ndarra
             axes.set_title(name, fontsize=11)
             draw(axes, clearance, run.q[sample], run.x_ref)
         strip = figure.add_subplot(grid[1, :], xlim=(0, first.t[-1]), ylim=(-14, 8))
-        for (name, each), colour in zip(distances.items(), (WRONG, "#0072B2")):
+        for (name, each), colour in zip(distances.items(), (WRONG, OKABE_ITO[0])):
             now = sample // 10 + 1
             strip.plot(first.t[::10][:now], 100 * np.array(each)[:now], color=colour, lw=1.6, label=name)
         strip.axhline(100 * clearance.margin, color="black", lw=0.8, ls=":")
         strip.axhspan(-20, 0, color=WRONG, alpha=0.12, lw=0)
         strip.text(0.05, -12.5, "overlap", fontsize=8, color=WRONG)
-        strip.text(first.t[-1], 1.8, "margin", fontsize=8, ha="right")
-        strip.set(xlabel="time [s]", ylabel="gap [cm]")
+        strip.text(0.05, 1.8, "margin", fontsize=8)
+        strip.set(xlabel="time [s]", ylabel="distance [cm]")
+        strip.legend(loc="upper right", fontsize=8, frameon=False, ncols=2)
         strip.spines[["top", "right"]].set_visible(False)
         figure.canvas.draw()
         yield np.asarray(figure.canvas.buffer_rgba())[..., :3].copy()

@@ -18,6 +18,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import fpbm_cpp as fp
+from fpbm_cpp.plot import LIGHT, OKABE_ITO
 
 DT = 1e-3  # [s]
 EVERY = 1.5  # [s]
@@ -84,15 +85,18 @@ def main() -> None:
             f"{name:34}{acceleration.max():>12.3f} A{jerk.max():>8.3f} J"
             f"{1e3 * off_line(p):>11.2f} mm{settled(p):>12.2f} s"
         )
-        axes[0, column].plot(t, p - p[0])
-        axes[1, column].plot(t[1:], acceleration)
-        axes[2, column].plot(t[1:], jerk)
+        for each, axis_name, (colour, dash) in zip((p - p[0]).T, "xyz", LIGHT.styles()):
+            axes[0, column].plot(t, each, color=colour, ls=dash, label=axis_name)
+        axes[1, column].plot(t[1:], acceleration, color=OKABE_ITO[0], lw=1.0)
+        axes[2, column].plot(t[1:], jerk, color=OKABE_ITO[0], lw=1.0)
         axes[0, column].set_title(name)
         axes[2, column].set(yscale="log", ylim=(1e-3, 20), xlabel="time [s]")
         for axis in axes[1:, column]:
-            axis.axhline(1.0, color="black", linewidth=0.8, linestyle="--")
+            axis.axhline(1.0, color="black", linewidth=0.8, linestyle="--", label="bound")
     for axis, label in zip(axes[:, 0], ("tip [m]", "largest |q̈| / A", "largest jerk / J"), strict=True):
         axis.set_ylabel(label)
+    axes[0, 0].legend(loc="upper left", ncols=3, frameon=False)
+    axes[1, 1].legend(loc="upper right", bbox_to_anchor=(1.0, 0.97), frameon=False)
     for axis in axes.flat:
         axis.spines[["top", "right"]].set_visible(False)
         axis.grid(alpha=0.3)

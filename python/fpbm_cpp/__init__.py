@@ -5,7 +5,7 @@ motion at joint-velocity level (MVN, WMVN) or at joint-acceleration level (MAN, 
 are radians, metres and seconds. Numbers in brackets are the equations of Wang et al., IEEE Access 2019.
 """
 
-from . import arms, paths, robots, schemes, tasks
+from . import arms, paths, robots, schemes, shown, tasks
 from ._core import (
     MAX_DOF,
     Kinematics,
@@ -29,6 +29,7 @@ from .capsule import Capsule
 from .clearance import Clearance
 from .errors import ParameterError, ResolutionError, SweepInterrupted, TuneInterrupted, UrdfWarning
 from .io.run_file import load
+from .motion.comparison import Comparison, comparison
 from .motion.lanes import LANES
 from .motion.run import Run, RunStatus
 from .motion.simulation import simulate, track
@@ -43,7 +44,7 @@ from .tuning import Tuning, tune
 from .viewer import servo, view
 
 __all__ = ["LANES", "Run", "RunStatus", "Sweep", "Tuning", "load", "simulate", "sweep", "track", "tune"]
-__all__ += ["servo", "view"]
+__all__ += ["Comparison", "comparison", "servo", "view"]
 __all__ += ["Capsule", "Clearance", "Cuboid", "HalfSpace", "Nearest"]
 __all__ += ["Kinematics", "Limiter", "PathFollower", "SaturatedMotion", "Status", "TargetFilter", "Tick"]
 __all__ += ["SaturatedLevels", "TaskBounds", "Tracker", "failed", "saturate"]

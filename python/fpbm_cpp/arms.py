@@ -18,6 +18,7 @@ from ._core import Model as CoreModel
 from ._types import ArrayField, FilledArrayField
 from .errors import not_one_of, require, wrong
 from .parameter import POSITIVE, Data, Parameter, data, parameter
+from .shown import html_table, joint_table
 
 __all__ = ["Arm", "Joint", "JointLimits", "PlanarArm", "SerialArm"]
 
@@ -150,6 +151,9 @@ class PlanarArm(Arm):
     kind: ClassVar[str] = "planar"
     lengths: ArrayField = parameter("Link lengths, 2 to MAX_DOF of them.", POSITIVE, shape="(n,)", unit="m")
 
+    def _repr_html_(self) -> str:
+        return html_table("PlanarArm", ["link", "length [m]"], enumerate(self.lengths, 1))
+
     def _finish(self) -> None:
         CoreArm.__init__(self, self.lengths)
 
@@ -177,6 +181,10 @@ class SerialArm(Arm):
 
     def __str__(self) -> str:
         return f"<SerialArm of {self.dof} joints, {self.joints[0].name} to {self.joints[-1].name}>"
+
+    def _repr_html_(self) -> str:
+        moving = [each.type for each in self.joints if each.mimic is None]
+        return joint_table(str(self), self.joint_names, moving, self.limits)
 
     @classmethod
     def from_joints(cls, joints: Sequence[Joint], tip: ArrayLike = IDENTITY) -> SerialArm:

@@ -16,6 +16,7 @@ from ._types import ArrayField
 from .arms import ARMS, IDENTITY, Arm, Joint, JointLimits, SerialArm
 from .errors import not_one_of, require, wrong
 from .parameter import NOT_NEGATIVE, Data, Parameter, data, parameter
+from .shown import joint_table
 
 __all__ = ["NamedFrame", "Robot", "TreeJoint"]
 
@@ -86,6 +87,10 @@ class Robot(Data, CoreRobot):
 
     def __str__(self) -> str:
         return f"<Robot of {self.dof} joints and {len(self.named_frames)} frames>"
+
+    def _repr_html_(self) -> str:
+        moving = [each.joint.type for each in self.joints if each.joint.mimic is None]
+        return joint_table(str(self), self.joint_names, moving, self.limits)
 
     @property
     def frames(self) -> tuple[str, ...]:

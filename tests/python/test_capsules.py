@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import importlib.util
+import io
 import itertools
 import os
 import re
 import subprocess
 import sys
+import time
 import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -16,18 +18,19 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from scipy.spatial import ConvexHull
+from scipy.spatial import ConvexHull, cKDTree
 from scipy.spatial.transform import Rotation
 
 import fpbm_cpp as fp
 from fpbm_cpp._types import Array
 from fpbm_cpp.capsule import Capsule
 from fpbm_cpp.errors import ParameterError
+from fpbm_cpp.io import capsules
 from fpbm_cpp.io.capsule_fit import Fit, distances, fit_capsule, fit_cylinder
 from fpbm_cpp.io.capsules import capsules_of
 from fpbm_cpp.io.mesh_file import read_mesh
 from fpbm_cpp.io.urdf import read_places
-from fpbm_cpp.io.urdf_shapes import read_shapes
+from fpbm_cpp.io.urdf_shapes import CELLS, MANY, Shape, read_shapes
 
 trimesh = pytest.importorskip("trimesh")
 
@@ -386,6 +389,100 @@ def test_capsule_is_data() -> None:
         Capsule(-1, [0, 0, 0], [0, 0, 1], 0.1)
 
 
+# Meshes from CAD programs
+
+# Largest processor time of the fit in units of machine(): 2 units; without an approximation, 31 units.
+UNITS = 6.0
+
+
+def machine() -> float:
+    """Processor time of hulls and of Python's interpreter on this machine, now [s]."""
+    begin = time.process_time()
+    rng = np.random.default_rng(0)
+    for _ in range(60):
+        ConvexHull(rng.normal(size=(20_000, 3)))
+        sum(i * i for i in range(60_000))
+    return time.process_time() - begin
+
+
+def cad_part(seed: int) -> object:
+    """A bracket with rounded bosses and holes, as a CAD program exports it: 46,000 triangles."""
+    rng = np.random.default_rng(seed)
+    bodies = [trimesh.creation.box(extents=[0.05, 0.04, 0.02]), trimesh.creation.box(extents=[0.02, 0.04, 0.05])]
+    bodies[1].apply_translation([0.02, 0, 0.03])
+    for _ in range(16):
+        boss = trimesh.creation.capsule(height=0.01, radius=0.003, count=[40, 40])
+        boss.apply_translation(rng.uniform(-0.025, 0.025, 3))
+        bodies.append(boss)
+    return trimesh.util.concatenate(bodies)
+
+
+@pytest.fixture(scope="module")
+def cad_arm(tmp_path_factory) -> Path:
+    """Four links, each of the same three parts with 138,000 triangles."""
+    folder = tmp_path_factory.mktemp("cad")
+    parts = [cad_part(seed) for seed in range(3)]
+    for i, part in enumerate(parts):
+        part.export(folder / f"part{i}.stl")
+    shapes = [
+        geometry(f'mesh filename="part{i}.stl"', f'<origin xyz="{0.03 * i} 0 {0.02 * i}" rpy="0.{i} 0 0"/>')
+        for i in range(3)
+    ]
+    links = [link(f"l{i}", *shapes) for i in range(4)]
+    joints = [joint(f"j{i}", f"l{i}", f"l{i + 1}", origin='<origin xyz="0.12 0 0.02" rpy="1 0 0"/>') for i in range(3)]
+    file = folder / "cad.urdf"
+    file.write_text(f'<robot name="r">{"".join(links + joints)}</robot>')
+    return file
+
+
+def test_a_fit_to_cad_meshes_takes_seconds(cad_arm: Path) -> None:
+    unit = machine()
+    begin = time.process_time()
+    found = capsules_of(cad_arm, "l3")
+    spent = time.process_time() - begin
+    assert spent < UNITS * unit, (spent, unit)
+    mesh = [trimesh.load(cad_arm.parent / f"part{i}.stl", process=False) for i in range(3)]
+    places = read_places(cad_arm, "l3")[2]
+    for name, (_, frame) in places.items():
+        own = [each for each in found if each.name == name]
+        for i, part in enumerate(mesh):
+            turn = Rotation.from_euler("x", i / 10).as_matrix()
+            shares = np.random.default_rng(i).dirichlet([1, 1, 1], 1)
+            inner = np.einsum("ij,fjk->fik", shares, np.asarray(part.triangles)).reshape(-1, 3)
+            points = np.vstack([part.vertices, inner]) @ turn.T + [0.03 * i, 0, 0.02 * i]
+            assert outside(points @ frame[:3, :3].T + frame[:3, 3], own) <= 1e-9
+
+
+def test_an_approximation_has_the_extent_of_the_body() -> None:
+    part = cad_part(0)
+    corners, edges = np.unique(part.vertices, axis=0), np.zeros((0, 2), dtype=int)
+    coarse = Shape(corners, edges).coarse()
+    assert len(coarse.corners) < len(corners) / 3
+    assert coarse.body.corners is corners
+    size = np.ptp(corners, axis=0).max()
+    far = cKDTree(coarse.corners).query(corners)[0]
+    assert far.max() <= np.sqrt(3) * size / CELLS
+    few = Shape(corners[:MANY], edges)
+    assert few.coarse() is few
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_a_slow_fit_has_a_progress_bar_on_a_terminal(terminal: bool, write, monkeypatch) -> None:
+    pytest.importorskip("tqdm")
+
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return terminal
+
+    file = write(link("base", SPHERE), link("tip", SPHERE), joint("a", "base", "tip"))
+    for delay, shown in ((0.0, terminal), (60.0, False)):
+        written = Terminal()
+        monkeypatch.setattr(sys, "stderr", written)
+        monkeypatch.setattr(capsules, "DELAY", delay)
+        assert len(capsules_of(file, "tip")) == 2
+        assert ("fitting capsules" in written.getvalue()) == shown
+
+
 # Robots of other packages
 
 
@@ -460,7 +557,7 @@ with_robots = pytest.mark.skipif(ROBOTS is None or not ROBOTS.exists(), reason="
 @with_robots
 @pytest.mark.parametrize("mesh", ["hand", "link0", "link4", "link5", "link7"])
 def test_no_axis_has_a_smaller_volume_for_a_mesh(mesh: str) -> None:
-    points = read_mesh(ROBOTS / f"panda_description/meshes/collision/{mesh}.stl").reshape(-1, 3)
+    points = read_mesh(ROBOTS / f"panda_description/meshes/collision/{mesh}.stl")[0]
     hull = points[ConvexHull(points).vertices]
     assert volume([fit_capsule(points)]) <= dense_search(hull) * 1.001
 

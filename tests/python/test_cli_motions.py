@@ -30,6 +30,7 @@ import click
 from click.testing import CliRunner, Result
 
 from fpbm_cpp import viewer
+from fpbm_cpp._core import PRESETS, ROBOT_PRESETS
 from fpbm_cpp.cli import command
 from fpbm_cpp.cli.text import summary
 from fpbm_cpp.job import prepare, read_job, write_job
@@ -154,6 +155,92 @@ def test_summary_agrees_with_the_run() -> None:
     assert "k1 = " not in shown_text
     assert max(map(len, result.stdout.splitlines())) <= 100
     assert result.stdout.isascii()
+
+
+EVERY = [*PRESETS, "planar:1,1,1,1", "planar:0.1,0.1,0.1"]
+
+
+@pytest.mark.parametrize("arm", EVERY)
+@pytest.mark.parametrize("task", ["position", "pose"])
+def test_track_keeps_the_limits_and_follows_its_default_circle(arm: str, task: str) -> None:
+    if task == "pose" and fp_dof(arm) < 6 and not arm.startswith("planar"):
+        pytest.skip("too few joints")
+    result = call("track", arm, "--task", task, "--out", "out")
+    assert result.exit_code == 0
+    assert "joints on a bound" in result.stdout
+    assert "complete, t = 10 s" in result.stdout
+    run = fp.load("out/run.npz")
+    assert run.saturated is not None
+    assert run.max_error() < 1e-4
+    reach = sum(np.linalg.norm(j.placement[:3, 3]) for j in run.arm.joints) if hasattr(run.arm, "joints") else None
+    reach = reach or run.arm.lengths.sum()
+    (radius,) = re.findall(r"radius = (\S+),", result.stdout)
+    assert 0.04 * reach < float(radius) < 0.13 * reach
+
+
+def fp_dof(arm: str) -> int:
+    return 0 if arm.startswith("planar") else fp.SerialArm.preset(arm).dof
+
+
+@pytest.mark.parametrize("name", ROBOT_PRESETS)
+def test_a_robot_follows_its_default_circles(name: str) -> None:
+    tips = fp.Robot.preset(name).frames
+    result = call("track", name, *(word for tip in tips for word in ("--task", tip)))
+    assert result.exit_code == 0
+    assert "joints on a bound" in result.stdout
+    assert "complete, t = 10 s" in result.stdout
+
+
+def test_without_limits_on_request() -> None:
+    result = call("track", "panda", *QUICK, "--no-limits", "--save-job", "job.toml")
+    assert "joints on a bound" not in result.stdout
+    assert "joints on a bound" not in call("track", "--job", "job.toml").stdout
+    assert "joints on a bound" in call("track", "--job", "job.toml", "--limits", "--save-job", "job.toml").stdout
+    assert "joints on a bound" in call("track", "--job", "job.toml").stdout
+
+
+def test_the_default_circle_shrinks_until_the_tip_can_follow() -> None:
+    """In this posture, the Panda cannot follow a circle of 0.1 m."""
+    almost_straight = ["--q0", "0,0,0,-0.1,0,0.5,0"]
+    result = call("track", "panda", *almost_straight)
+    assert "radius = 0.05" in result.stdout
+    assert "complete, t = 10 s" in result.stdout
+    result = call("track", "panda", *almost_straight, "--radius", "0.1")
+    assert "complete" not in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "remedy"),
+    [
+        (("planar:0.1,0.1,0.1", "--radius", "0.1"), "Make the path smaller, or choose another start posture"),
+        (("panda", "--radius", "0.1", "--duration", "0.5"), "Increase the duration of the path"),
+        (("panda", "--scheme", "mvn", "--dt", "0.05", "--duration", "1", "--no-limits"), "larger gains"),
+    ],
+)
+def test_a_tip_that_left_its_path_is_not_complete(arguments: tuple[str, ...], remedy: str) -> None:
+    result = call("track", *arguments, "--out", "out")
+    run = fp.load("out/run.npz")
+    assert run.max_error() > 1e-3
+    text = " ".join(result.stdout.split())
+    assert "complete" not in text
+    assert f"the tip was up to {run.max_error():.3g} m from its path" in text
+    assert remedy in text
+    assert "complete" not in str(run.status)
+    assert "complete" not in repr(run)
+
+
+def test_the_comparison_in_python_is_that_of_the_command() -> None:
+    result = call("compare", "planar:0.1,0.1,0.1", "--radius", "0.1", "--schemes", "mvn,fpbm", "--out", "out")
+    runs = {name: fp.load(f"out/{name}.npz") for name in ("mvn", "fpbm")}
+    table = fp.comparison(runs)
+    assert str(table) in result.stdout
+    assert table.complete == {"mvn": "off its path", "fpbm": "off its path"}
+    assert table.figures["mvn"]["max_error"] == runs["mvn"].max_error()
+    html = table._repr_html_()
+    assert "<th>mvn</th><td>off its path</td>" in html
+    assert str(fp.comparison(list(runs.values()))).splitlines()[3].startswith("FPBM ")
+    with pytest.raises(ValueError, match="at least one run"):
+        fp.comparison([])
 
 
 def test_prismatic_joints_have_metres() -> None:

@@ -129,7 +129,8 @@ def test_required_postures_are_accepted(name: str) -> None:
     for link, shapes in read_shapes(ROBOTS / urdf).items():
         own = [each for each in clearance.capsules if each.name == link]
         for shape in (each for each in shapes if each.cylinder is None and len(each.edges)):
-            edges = shape.moved(places[link][1]).edges
+            moved = shape.moved(places[link][1])
+            edges = moved.corners[moved.edges]
             inner = np.linspace(0, 1, 21)[:, None, None] * (edges[:, 1] - edges[:, 0]) + edges[:, 0]
             assert outside(inner.reshape(-1, 3), own) <= 1e-9, link
 
@@ -249,8 +250,7 @@ def test_the_message_names_both_remedies() -> None:
 
 def test_a_face_that_is_cut_twice_is_covered() -> None:
     """Two planes cut a face into quarters. Each quarter contains the corner where both cuts intersect."""
-    a, b, c = np.array([[0.0, 0, 0], [4, 0, 0], [0, 4, 0]])
-    whole = Shape(np.array([[a, b], [b, c], [c, a]]))
+    whole = Shape(np.array([[0.0, 0, 0], [4, 0, 0], [0, 4, 0]]), np.array([[0, 1], [1, 2], [2, 0]]))
     ex, ey = np.eye(3)[:2]
     for x in ((-np.inf, 1.0), (1.0, np.inf)):
         for y in ((-np.inf, 1.0), (1.0, np.inf)):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -184,6 +185,98 @@ def test_threads_and_no_global_state() -> None:
         first, second = pool.map(drawn, range(2))
     assert first == second
     assert "matplotlib.pyplot" not in sys.modules
+
+
+def test_a_notebook_shows_a_figure_as_a_picture() -> None:
+    figure = a_run().plot(panels=["error"])
+    png, size = figure._repr_png_()
+    width, height = struct.unpack(">II", png[16:24])
+    assert abs(width - 2 * size["width"]) <= 2
+    assert abs(height - 2 * size["height"]) <= 2
+
+
+def test_a_notebook_shows_a_figure_once_with_and_without_matplotlib_inline() -> None:
+    """A kernel displays the last value of a cell: one picture in each case."""
+    nbformat, nbclient = pytest.importorskip("nbformat"), pytest.importorskip("nbclient")
+    pytest.importorskip("ipykernel")
+    make = (
+        "import fpbm_cpp as fp\n"
+        "run = fp.simulate(fp.PlanarArm([1, 1, 1]), fp.Circle(0.1, 1.0), fp.MVN(), [0.3, 0.3, 0.3], dt=0.01)\n"
+        "run.plot(panels=['error'])"
+    )
+    cells = [make, "%matplotlib inline", "run.plot(panels=['error'])", "run"]
+    book = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(cell) for cell in cells])
+    try:
+        nbclient.NotebookClient(book, timeout=120, kernel_name="python3").execute()
+    except nbclient.exceptions.CellExecutionError:
+        raise
+    except Exception as unavailable:
+        pytest.skip(f"no kernel: {unavailable}")
+    first, _, second, run = (cell["outputs"] for cell in book["cells"])
+    for outputs in (first, second):
+        assert [("image/png" in each.get("data", {})) for each in outputs] == [True]
+    assert "text/html" in run[0]["data"]
+
+
+@pytest.mark.parametrize("name", ["positions", "velocities", "accelerations"])
+def test_all_bounds_are_shown_on_request(name: str) -> None:
+    run = a_run_in_space()
+    without, bounded = (
+        [line for line in run.plot(panels=[name], bounds=bounds).axes[0].lines if len(line.get_xdata()) == 2]
+        for bounds in (False, True)
+    )
+    limits = run.limits
+    low, high = {
+        "positions": (limits.lower, limits.upper),
+        "velocities": (-limits.velocity, limits.velocity),
+        "accelerations": (-limits.acceleration, limits.acceleration),
+    }[name]
+    every = np.concatenate([np.unique(each[np.isfinite(each)]) for each in (low, high)])
+    assert sorted(line.get_ydata()[0] for line in bounded) == pytest.approx(sorted(every))
+    assert len(without) < len(bounded) or len(every) == len(without)
+
+
+@pytest.mark.parametrize("name", ["velocities", "error"])
+def test_one_panel_has_room_for_its_data(name: str) -> None:
+    figure = a_run_in_space().plot(panels=[name])
+    figure.draw_without_rendering()
+    (axes,) = figure.axes
+    inside = axes.get_window_extent().height / figure.dpi
+    assert inside > 1.4
+
+
+def test_the_legend_of_a_stack_is_above_its_lines() -> None:
+    run = a_run_of_a_stack()
+    figure = run.plot(panels=["task_errors", "scale"])
+    figure.draw_without_rendering()
+    for axes in figure.axes:
+        legend = axes.get_legend().get_window_extent()
+        for line in axes.get_lines():
+            points = axes.transData.transform(np.column_stack(line.get_data()))
+            points = points[np.isfinite(points).all(axis=1)]
+            assert points[:, 1].max() < legend.y0, line.get_label()
+
+
+def test_objects_have_short_forms() -> None:
+    arm, q0 = fp.SerialArm.preset("panda"), np.array([0, -0.78, 0, -2.35, 0, 1.57, 0.78])
+    tracker = fp.Tracker(arm, fp.MVN(), q0)
+    follower = tracker.follow(fp.Line([0.1, 0, 0], 2.0))
+    tick = tracker.tick(follower)
+    filtered = fp.TargetFilter(np.zeros(3), velocity=1, acceleration=2, jerk=10)
+    for each, start in (
+        (tracker, "<Tracker of 7 joints: q = [0, -0.78,"),
+        (tick, "<Tick: OK"),
+        (filtered, "<TargetFilter: x at [0, 0, 0]"),
+        (follower, "<PathFollower: on its path>"),
+    ):
+        assert repr(each).startswith(start)
+        assert len(repr(each)) < 200
+    sweep = fp.sweep(fp.PlanarArm([1, 1, 1]), fp.Circle(0.1, 1.0), [fp.MVN()], [[0.3] * 3], dt=0.01)
+    for each in (arm, fp.PlanarArm([1, 1]), fp.Robot.preset("two_pandas"), sweep, a_run()):
+        html = each._repr_html_()
+        assert html.startswith("<table><caption>")
+        assert html.count("<tr>") <= 20
+        assert len(html) < 3000
 
 
 def test_missing_matplotlib() -> None:

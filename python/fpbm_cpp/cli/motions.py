@@ -6,14 +6,13 @@ from pathlib import Path
 
 import click
 
-from .._core import Status
 from ..errors import not_one_of
 from ..job.sections import job_errors
-from ..motion.run import Run
+from ..motion.comparison import comparison
 from ..schemes import SCHEMES
 from .plain import Writer, dark_option, import_viser, out_option, picture, write_files
 from .request import Request, motion_command
-from .text import FIGURES, Row, figure_table, summary
+from .text import summary
 
 port_option = click.option(
     "--port", type=click.IntRange(0, 65535), default=8080, help="Port of the page; 0 selects a free port."
@@ -43,12 +42,15 @@ def track(request: Request, out: Path | None, dark: bool, also: tuple[str, ...])
     each frame that follows the path. An arm in space with 4 or 5 joints has a position task, and below it an axis task.
     All options have defaults, and the defaults in use are printed. Separate several numbers by commas.
 
+    The arm keeps its joint limits, as in fpbm_cpp.track. With --no-limits, it moves by the scheme alone, as in
+    fpbm_cpp.simulate. With --job, it keeps limits if the job has limits, or with --limits.
+
     With --out, the folder gets run.png, run.npz, which fpbm_cpp.load reads, and job.toml, which contains all options.
     If the motion stops early, the exit status is 1, and the motion before the stop is still printed and written.
     """
     if also and out is None:
         raise click.UsageError("--also needs --out DIR.")
-    motion = request.motion()
+    motion = request.motion(limited=request.file is None)
     with request.plain():
         run = motion.run()
     request.say(motion)
@@ -96,13 +98,7 @@ def compare(request: Request, schemes: str | None, out: Path | None, dark: bool)
         runs = {kind: motion.run() for kind, motion in motions.items()}
     chosen = motions.get(request.scheme, motions[kinds[-1]])  # Usually, this motion has the options of all schemes.
     request.say(chosen, scheme=False)
-    remarks: dict[str, list[str]] = {}
-    for kind, run in runs.items():
-        if run.status.code is not Status.OK:
-            remarks.setdefault(" ".join(str(run.status).split()), []).append(kind)
-    rows = [_row(kind, run) for kind, run in runs.items()]
-    texts = [f"{', '.join(kinds)}: {text}" for text, kinds in remarks.items()]
-    click.echo(figure_table(["scheme"], run.kind, rows, texts))
+    click.echo(str(comparison(runs)))
     if out is not None:
         from ..plot import compare as figure
 
@@ -110,13 +106,6 @@ def compare(request: Request, schemes: str | None, out: Path | None, dark: bool)
         write_files(out, {"compare.png": picture(figure(runs, dark=dark)), **saved, "job.toml": chosen.save})
     if not any(run.status for run in runs.values()):
         raise click.ClickException("no motion is complete: the remarks above have the causes and remedies")
-
-
-def _row(kind: str, run: Run) -> Row:
-    if not len(run.t):
-        return [kind], "", {}
-    figures = {name: of_run(run) for name, (_, _, of_run) in FIGURES.items()}
-    return [kind], "yes" if run.status else f"to {run.status.time:.3g} s", figures
 
 
 @motion_command(

@@ -104,8 +104,8 @@ def _job_options(kind: bool, path: bool, clear: bool) -> Iterator[JobOption]:
             having = [each for each in keys if key in keys[each]]
             yield _option(section, key, keys[having[0]][key], of=having if len(having) < 3 else [])
     text = (
-        "Keep the arm's limits, with the changes below. Arms without acceleration bounds need --limit-acceleration: "
-        "e.g. 10 rad/s^2."
+        "Keep the arm's limits, with the changes below; track does so by default. Arms without acceleration bounds "
+        "need --limit-acceleration: e.g. 10 rad/s^2."
     )
     if path:
         yield JobOption("limits", "keep", "--limits/--no-limits", help=text)
@@ -170,6 +170,7 @@ class Request:
             every = ", ".join((*PRESETS, *ROBOT_PRESETS))
             raise click.UsageError(f"Missing argument 'ARM': {every}, planar:1,1,1,1 or a URDF file.")
         self.file, self.copy = file, copy
+        self.free = any(option.key == "keep" and value is False for option, value in values.items())
         self.sections = {option.section for option in values}
         self.table: Table = {}
         self.flags: dict[str, str] = {}
@@ -197,9 +198,10 @@ class Request:
     def motion(self, kind: str | None = None, *, at_rest: bool = False, limited: bool = False) -> Motion:
         """The motion, with this kind of scheme if given.
 
-        at_rest: whether the motion must start at rest. limited: whether limits are kept without a request.
+        at_rest: whether the motion must start at rest. limited: whether limits are kept without a request, unless the
+        option --no-limits is given.
         """
-        table = {"limits": {}, **self.table} if limited else self.table
+        table = {"limits": {}, **self.table} if limited and not self.free else self.table
         for section in ("clearance", "bounds"):
             if section in table and "clearance" not in self.sections:
                 command = click.get_current_context().info_name

@@ -12,15 +12,16 @@ import numpy as np
 
 from .._core import Status, advice, message
 from ..errors import SweepInterrupted, TuneInterrupted
+from ..motion.comparison import FIGURES, Row, figure_table
 from ..motion.sweeping import Sweep
 from ..motion.sweeping import sweep as run_sweep
 from ..schemes import FPBM
+from ..shown import number
 from ..tuning import Tuning
 from ..tuning import tune as search
 from ..tuning.tuner import OBJECTIVES
 from .plain import content, dark_option, make_folder, out_option, picture, progress, workers_option, write_files
 from .request import Request, Word, motion_command
-from .text import FIGURES, Row, figure_table, number
 
 Cases = list[tuple[float, ...]]
 VARY = "Values of a scheme option: alpha=0,0.6,1, or alpha=0:1:11 for 11 values. All combinations run."

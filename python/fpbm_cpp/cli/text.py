@@ -1,6 +1,6 @@
 """Key figures of motions as text."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator
 
 import click
 import numpy as np
@@ -8,42 +8,9 @@ import numpy as np
 from .._types import Array
 from ..motion.run import Run
 from ..motion.task_errors import error_parts
+from ..shown import number
 from ..skeleton import joint_labels, joint_units
 from .plain import WIDTH
-
-# Key figures of a sweep: column heading, unit, and the figure of a run.
-FIGURES: dict[str, tuple[str, str, Callable[[Run], float]]] = {
-    "max_error": ("tip error", "m", Run.max_error),
-    "max_orientation_error": ("tip error", "rad", Run.max_orientation_error),
-    "peak_velocity": ("peak qd", "rad/s", lambda run: np.abs(run.qd).max()),
-    "final_velocity": ("final qd", "rad/s", lambda run: np.abs(run.qd[-1]).max()),
-    "peak_acceleration": ("peak qdd", "rad/s^2", lambda run: np.abs(run.qdd).max()),
-    "final_acceleration": ("final qdd", "rad/s^2", lambda run: np.abs(run.qdd[-1]).max()),
-    "manipulability": ("manip.", "least", lambda run: run.manipulability().min()),
-}
-Row = tuple[Sequence[str], str, Mapping[str, float]]
-
-
-def columns(*rows: Sequence[str]) -> str:
-    """Rows of cells as aligned columns; the first column is left-aligned. Rows may be shorter than the first row."""
-    whole = [[*row, *[""] * (len(rows[0]) - len(row))] for row in rows]
-    widths = [max(map(len, column)) for column in zip(*whole)]
-    lines = ("  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]) for row in whole)
-    return "\n".join(line.rstrip() for line in lines)
-
-
-def figure_table(names: Sequence[str], task: str, rows: Iterable[Row], remarks: Iterable[str]) -> str:
-    """Table with a row for each scheme: named cells, complete motions, figures of the worst motion; remarks below."""
-    shown = [name for name in FIGURES if task == "pose" or name != "max_orientation_error"]
-    header = zip(*((name, "") for name in (*names, "complete")), *(FIGURES[name][:2] for name in shown))
-    cells = [[*first, done, *(number(figures[name]) for name in shown if figures)] for first, done, figures in rows]
-    lines = [click.wrap_text(remark, WIDTH, subsequent_indent="  ") for remark in remarks]
-    return "\n".join([columns(*header, *cells), *([""] if lines else []), *lines])
-
-
-def number(value: float) -> str:
-    """A number with four significant digits, or two below 1e-3."""
-    return f"{value:.1e}" if 0.0 < abs(value) < 1e-3 else f"{value:.4g}"
 
 
 def summary(run: Run) -> str:

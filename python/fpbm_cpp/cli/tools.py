@@ -20,6 +20,7 @@ from ..clearance import Clearance
 from ..io.header import SCALARS
 from ..job import Motion, prepare
 from ..job.sections import Table
+from ..motion.comparison import columns
 from ..motion.lanes import LANES
 from ..motion.sweeping import sweep
 from ..parameter import parameters
@@ -28,7 +29,6 @@ from ..schemes import SCHEMES
 from ..worst import measure
 from .plain import OUT, PLACE, WIDTH, Plain, file_errors
 from .request import limit_options
-from .text import columns
 
 EVALUATIONS = 4000  # Evaluations of a scheme by RK4 on a path of 1 s at 1 kHz.
 # Joints, frame of the tip, capsules, and their source for a comment.

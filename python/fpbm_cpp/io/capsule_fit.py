@@ -21,9 +21,12 @@ DIRECTIONS = 80  # Directions of lines that are tried.
 STARTS = 4  # Lines at which the search starts.
 APART = 0.9  # Cosine of the least angle between the lines of two starts.
 BALL = 0.1  # Length below which a capsule gives a second, longer start; the points are scaled to a unit ball.
-ACTIVE = 40  # Points in the first search; points outside its result are added.
-GOLDEN = (np.sqrt(5.0) - 1) / 2
-ROUNDS = 24  # Steps of the golden section on a line: the final interval is 1e-5 of the range of radii.
+ACTIVE = 40  # Points in the first search.
+SEARCHES = 20  # Searches, each with points outside the previous result and the near points of the previous search.
+MORE = 12  # Points that are added to a search.
+SPACING = 0.1  # Least distance of these points.
+SLACK = 0.1  # Distance from the surface of the capsule within which the points of a search are kept.
+GRID = np.linspace(0.0, 1.0, 17)
 MARKS = (np.sqrt(2.0), np.pi)  # Irrational factors: points with equal marks are equal up to round-off.
 ROOM = 1e-12  # Slack of the radius, relative to the coordinates, for round-off in distance computations.
 
@@ -40,10 +43,11 @@ class Fit(NamedTuple):
         return float(np.pi * self.radius**2 * (np.linalg.norm(self.b - self.a) + 4 / 3 * self.radius))
 
 
-def fit_capsule(points: Array, radii: Array | None = None, *, rough: bool = False) -> Fit:
+def fit_capsule(points: Array, radii: Array | None = None, *, rough: bool = False, search: bool = True) -> Fit:
     """The smallest capsule that contains balls at points (N, 3) with radii (N,); default radii: 0.
 
-    Deterministic. A rough fit is several times as fast, and rarely larger. Raises ImportError if SciPy is missing.
+    Deterministic. A rough fit is several times as fast, and rarely larger. Without the search, the axis is parallel to
+    a principal axis. Raises ImportError if SciPy is missing.
     """
     radii = np.zeros(len(points)) if radii is None else radii
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
@@ -51,10 +55,13 @@ def fit_capsule(points: Array, radii: Array | None = None, *, rough: bool = Fals
     if scale == 0.0:
         return Fit(middle, middle, 0.0)
     p, rho = outermost((points - middle) / scale, radii / scale)
-    best = min(
-        (_improved(start, p, rho, 1e-5 if rough else 1e-10) for start in _starts(p, rho, rough)),
-        key=lambda fit: fit.volume,
-    )
+    far = _farthest(p, rho)
+    starts = _starts(p[far], rho[far], rough)
+    if search:
+        starts = [_improved(start, p, rho, far, 1e-5) for start in starts]
+    best = min(starts, key=lambda fit: fit.volume)
+    if not rough:
+        best = _improved(best, p, rho, far, 1e-10)
     return enclosing(middle + scale * best.a, middle + scale * best.b, points, radii)
 
 
@@ -62,7 +69,8 @@ def fit_cylinder(radius: float, length: float) -> Fit:
     """The smallest capsule about the z axis that contains a cylinder about the z axis, centred at the origin."""
     half = length / 2
     rim = np.array([[radius, 0, -half], [radius, 0, half]])
-    return _on_lines(np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]]), rim, np.zeros(2))[0]
+    fit = _on_lines(np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]]), rim, np.zeros(2), 6)[0]
+    return enclosing(fit.a, fit.b, rim, np.zeros(2))
 
 
 def enclosing(a: Array, b: Array, points: Array, radii: Array) -> Fit:
@@ -97,19 +105,28 @@ def outermost(points: Array, radii: Array) -> tuple[Array, Array]:
     return np.vstack([bare, points[balls]]), np.concatenate([np.zeros(len(bare)), radii[balls]])
 
 
-def _starts(points: Array, radii: Array, rough: bool) -> list[Fit]:
-    """The best capsules on lines of many different directions, or on a principal axis; they contain most points."""
+def _spiral() -> Array:
+    """Directions (DIRECTIONS, 3) on a spiral over half the sphere."""
     i = np.arange(DIRECTIONS)
-    z, turn = 1.0 - (i + 0.5) / DIRECTIONS, np.pi * (1.0 + np.sqrt(5.0)) * i  # A spiral over half the sphere.
+    z, turn = 1.0 - (i + 0.5) / DIRECTIONS, np.pi * (1.0 + np.sqrt(5.0)) * i
     flat = np.sqrt(1.0 - z * z)
-    spiral = np.column_stack([flat * np.cos(turn), flat * np.sin(turn), z])
-    # The outermost points suffice here; the search has all points.
-    reach = np.hstack([points @ spiral.T, -points @ spiral.T]) + radii[:, None]
-    few = np.unique(np.argmax(reach, axis=0))
-    points, radii = points[few], radii[few]
+    return np.column_stack([flat * np.cos(turn), flat * np.sin(turn), z])
+
+
+SPIRAL = _spiral()
+
+
+def _farthest(points: Array, radii: Array) -> NDArray[np.intp]:
+    """Indices of the farthest balls in the directions of the spiral and in the opposite directions."""
+    along = points @ SPIRAL.T
+    return np.unique(np.argmax(np.hstack([along, -along]) + radii[:, None], axis=0))
+
+
+def _starts(points: Array, radii: Array, rough: bool) -> list[Fit]:
+    """The best capsules on lines of many different directions, or on a principal axis; they contain these points."""
     principal = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2]
-    directions, most = (principal, 1) if rough else (np.vstack([principal, spiral]), STARTS)
-    fits = sorted(zip(_about(directions, points, radii), directions), key=lambda found: found[0].volume)
+    directions, most = (principal, 1) if rough else (np.vstack([principal, SPIRAL]), STARTS)
+    fits = sorted(zip(_about(directions, points, radii, rough), directions), key=lambda found: found[0].volume)
     chosen: list[tuple[Fit, Array]] = []
     for fit, u in fits:
         if len(chosen) < most and all(abs(u @ other) < APART for _, other in chosen):
@@ -120,62 +137,46 @@ def _starts(points: Array, radii: Array, rough: bool) -> list[Fit]:
     return [*(fit for fit, _ in chosen), *longer]
 
 
-def _about(directions: Array, points: Array, radii: Array) -> list[Fit]:
+def _about(directions: Array, points: Array, radii: Array, rough: bool) -> list[Fit]:
     """A small capsule for each direction (D, 3): the axis passes near the centre of the points' projection."""
     shadows = points - (directions @ points.T)[:, :, None] * directions[:, None, :]  # (D, N, 3)
     middles = shadows.mean(axis=1)
     each = np.arange(len(directions))
-    for step in range(2, 30):  # Badoiu and Clarkson, "Smaller core-sets for balls".
+    for step in range(2, 12 if rough else 30):  # Badoiu and Clarkson, "Smaller core-sets for balls".
         away = shadows - middles[:, None, :]
         far = np.argmax(np.sqrt(np.einsum("dni,dni->dn", away, away)) + radii, axis=1)
         middles = middles + away[each, far] / step
-    return _on_lines(middles, directions, points, radii)
+    return _on_lines(middles, directions, points, radii, 2)
 
 
-def _on_lines(origins: Array, directions: Array, points: Array, radii: Array) -> list[Fit]:
-    """The smallest capsule with its axis on each line (D, 3): for a larger r, the axis may be shorter.
+def _on_lines(origins: Array, directions: Array, points: Array, radii: Array, rounds: int) -> list[Fit]:
+    """A small capsule with its axis on each line (D, 3): for a larger r, the axis may be shorter.
 
-    A golden-section search over r, for all lines simultaneously.
+    A grid search over r, for all lines simultaneously; each round divides the interval by 8.
     """
     away = points - origins[:, None]  # (D, N, 3)
     s = np.einsum("dnk,dk->dn", away, directions)
     d = np.linalg.norm(away - s[:, :, None] * directions[:, None], axis=2)
-
-    def ends(r: Array) -> tuple[Array, Array]:
-        reach = np.sqrt(np.maximum((r[:, None] - radii) ** 2 - d * d, 0.0))
-        low, high = np.min(s + reach, axis=1), np.max(s - reach, axis=1)
-        middle = (low + high) / 2
-        return np.minimum(low, middle), np.maximum(high, middle)
-
-    def volume(r: Array) -> Array:
-        low, high = ends(r)
-        return np.asarray(r * r * (high - low + 4 / 3 * r))
-
     least = np.max(d + radii, axis=1)
     middles = (s.min(axis=1) + s.max(axis=1)) / 2
     most = np.max(np.hypot(s - middles[:, None], d) + radii, axis=1)  # Radius of a ball around all points.
-
-    def radius(x: Array) -> Array:  # The slope of the volume at the least radius may be infinite in r, not in x.
-        return np.asarray(least + (most - least) * x * x)
-
-    inner, outer = np.zeros(len(s)), np.ones(len(s))
-    near, far = (inner + share * (outer - inner) for share in (1 - GOLDEN, GOLDEN))
-    at_near, at_far = volume(radius(near)), volume(radius(far))
-    for _ in range(ROUNDS):
-        nearer = at_near < at_far
-        inner, outer = np.where(nearer, inner, near), np.where(nearer, far, outer)
-        tried = np.where(nearer, outer - GOLDEN * (outer - inner), inner + GOLDEN * (outer - inner))
-        at = volume(radius(tried))
-        near, far = np.where(nearer, tried, far), np.where(nearer, near, tried)
-        at_near, at_far = np.where(nearer, at, at_far), np.where(nearer, at_near, at)
-    tried = np.stack([least, most, radius(near), radius(far)])
-    best = np.argmin([volume(r) for r in tried], axis=0)
-    low, high = ends(np.take_along_axis(tried, best[None], axis=0)[0])
-    a, b = (origins + end[:, None] * directions for end in (low, high))
-    return [enclosing(*axis, points, radii) for axis in zip(a, b)]
+    each = np.arange(len(s))
+    begin, width = np.zeros(len(s)), np.ones(len(s))
+    for _ in range(rounds):
+        x = np.minimum(begin[:, None] + width[:, None] * GRID, 1.0)
+        # The slope of the volume at the least radius may be infinite in r, not in x.
+        r = least[:, None] + (most - least)[:, None] * x * x  # (D, G)
+        reach = np.sqrt(np.maximum((r[:, :, None] - radii) ** 2 - (d * d)[:, None], 0.0))  # (D, G, N)
+        low, high = np.min(s[:, None] + reach, axis=2), np.max(s[:, None] - reach, axis=2)
+        best = np.argmin(r * r * (np.maximum(high - low, 0.0) + 4 / 3 * r), axis=1)
+        begin, width = np.maximum(x[each, best] - width / 16, 0.0), width / 8
+    low, high, r = low[each, best], high[each, best], r[each, best]
+    middle = (low + high) / 2
+    a, b = (origins + end[:, None] * directions for end in (np.minimum(low, middle), np.maximum(high, middle)))
+    return [Fit(*each) for each in zip(a, b, map(float, r))]
 
 
-def _improved(start: Fit, points: Array, radii: Array, tolerance: float) -> Fit:
+def _improved(start: Fit, points: Array, radii: Array, far: NDArray[np.intp], tolerance: float) -> Fit:
     """A capsule near the start that contains the points and has a local minimum of the volume."""
     optimize = extra("scipy.optimize", "a capsule that fits", "clearance")
 
@@ -196,9 +197,10 @@ def _improved(start: Fit, points: Array, radii: Array, tolerance: float) -> Fit:
 
     x = np.concatenate([start.a, start.b, [start.radius]])
     everything = np.arange(len(points))
-    seen = np.argsort(room(x, everything), kind="stable")[:ACTIVE]
+    left = room(x, everything)
+    seen = far[np.argsort(left[far], kind="stable")[:ACTIVE]]
     best = enclosing(start.a, start.b, points, radii)
-    for _ in range(10):
+    for _ in range(SEARCHES):
         constraint: dict[str, Any] = {"type": "ineq", "fun": room, "jac": rates, "args": (seen,)}
         options = {"ftol": tolerance}
         x = optimize.minimize(volume, x, jac=True, method="SLSQP", constraints=constraint, options=options).x
@@ -206,9 +208,18 @@ def _improved(start: Fit, points: Array, radii: Array, tolerance: float) -> Fit:
             break
         best = min(best, enclosing(x[:3], x[3:6], points, radii), key=lambda fit: fit.volume)
         left = room(x, everything)
-        outside = everything[left < -tolerance]
-        outside = np.setdiff1d(outside[np.argsort(left[outside], kind="stable")][:ACTIVE], seen)
+        outside = _apart(points, everything[left < -tolerance], left)
         if not len(outside):
             break
-        seen = np.concatenate([seen, outside])
+        seen = np.union1d(seen[left[seen] < SLACK], outside)
     return best
+
+
+def _apart(points: Array, some: NDArray[np.intp], left: Array) -> NDArray[np.intp]:
+    """Up to MORE of some points, those with the least `left` first, at distances of at least SPACING."""
+    some = some[np.argsort(left[some], kind="stable")]
+    chosen: list[np.intp] = []
+    while len(some) and len(chosen) < MORE:
+        chosen.append(some[0])
+        some = some[np.linalg.norm(points[some] - points[some[0]], axis=1) > SPACING]
+    return np.array(chosen, dtype=np.intp)

@@ -14,7 +14,7 @@ from .._core import rotation
 from .._types import Array
 from ..arms import Joint
 from ..robots import TreeJoint
-from .capsule_fit import Fit, distances, outermost
+from .capsule_fit import Fit, distances, enclosing, fit_capsule, outermost
 from .urdf_shapes import Shape, together
 
 PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89, 97, 101, 103, 107)
@@ -33,6 +33,17 @@ class Part(NamedTuple):
 
     shape: Shape
     fit: Fit
+
+    def contained(self) -> Part:
+        """This part, with a radius such that the capsule contains the body that the shape approximates."""
+        body = self.shape.body
+        fit = self.fit if body is self.shape else enclosing(self.fit.a, self.fit.b, body.points, body.sizes)
+        return Part(self.shape, fit)
+
+
+def rough_part(shape: Shape, search: bool = True) -> Part:
+    """A part with a rough fit."""
+    return Part(shape, fit_capsule(shape.points, shape.sizes, rough=True, search=search))
 
 
 @dataclass
@@ -114,8 +125,7 @@ def _outer(link: Link) -> Shape:
     """The points of a link that are not in the convex hull of all other points."""
     whole = together([part.shape for part in link.parts])
     points, sizes = outermost(whole.points, whole.sizes)
-    bare = np.repeat(points[sizes == 0.0][:, None], 2, axis=1)
-    return Shape(bare, points[sizes > 0.0], sizes[sizes > 0.0])
+    return Shape(points[sizes == 0.0], centers=points[sizes > 0.0], radii=sizes[sizes > 0.0])
 
 
 def postures(joints: Sequence[Joint], count: int) -> Array:

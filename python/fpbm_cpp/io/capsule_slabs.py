@@ -10,8 +10,8 @@ import numpy as np
 from .._types import Array
 from ..errors import extra
 from ..robots import TreeJoint
-from .capsule_fit import enclosing, fit_capsule
-from .capsule_gaps import Link, Part, capsules_apart, link_frames, postures
+from .capsule_fit import enclosing
+from .capsule_gaps import Link, Part, capsules_apart, link_frames, postures, rough_part
 
 MOST = 8  # Largest number of capsules of a link: TIAGo's torso needs 5 in its home posture.
 PLACES = 6  # A shape is cut in two at the ends of this number of equal parts.
@@ -113,8 +113,12 @@ def clear(
         found = _best(state, pair, _moved) or _best(state, pair, slabs)
         if found is None:
             given_up.add(pair)
-        else:
-            links[found[0]].parts = found[1]
+            continue
+        i, parts = found
+        before, links[i].parts = links[i].parts, [part.contained() for part in parts]
+        if state.lack_of_link(i, links[i].parts) >= state.lack_of_link(i, before):
+            links[i].parts = before
+            given_up.add(pair)
 
 
 def _best(
@@ -140,11 +144,9 @@ def _best(
 
 def _directions(part: Part) -> list[Array]:
     """The axis of a part's capsule, its principal axes and its frame's axes, without nearly equal directions."""
-    points = part.shape.points
     along = part.fit.b - part.fit.a
-    principal = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2]
     directions: list[Array] = []
-    for u in (along / max(float(np.linalg.norm(along)), 1e-300), *principal, *np.eye(3)):
+    for u in (along / max(float(np.linalg.norm(along)), 1e-300), *part.shape.principal_axes(), *np.eye(3)):
         if np.any(u) and all(abs(u @ other) < ALIKE for other in directions):
             directions.append(u)
     return directions
@@ -159,7 +161,7 @@ def _slabs(part: Part) -> Iterator[list[Part]]:
         for places in [*inner, *(list(np.linspace(low, high, count + 1)[1:-1]) for count in SLABS)]:
             shapes = [part.shape.between(u, *ends) for ends in pairwise([-np.inf, *places, np.inf])]
             if all(len(shape.points) for shape in shapes):
-                yield [Part(shape, fit_capsule(shape.points, shape.sizes, rough=True)) for shape in shapes]
+                yield [rough_part(shape) for shape in shapes]
 
 
 def _moved(part: Part) -> Iterator[list[Part]]:

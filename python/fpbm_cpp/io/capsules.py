@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from itertools import combinations, pairwise
 
 import numpy as np
@@ -16,7 +18,7 @@ from ..clearance import MARGIN
 from ..errors import wrong
 from ..robots import TreeJoint
 from .capsule_fit import Fit, fit_capsule, fit_cylinder
-from .capsule_gaps import Gaps, Link, Part, link_frames, postures
+from .capsule_gaps import Gaps, Link, Part, link_frames, postures, rough_part
 from .capsule_slabs import clear
 from .urdf import Places, read_places
 from .urdf_shapes import Shape, read_shapes, together
@@ -24,10 +26,12 @@ from .urdf_tree import read_tree
 
 FAIR = 0.85  # A link gets several capsules if their volume is at most this fraction of the volume of one capsule.
 CUTS = 6  # A shape is cut at the ends of this number of equal parts.
+SEARCHED = 3  # Cuts for which the search runs: those that are best before the search.
 ALIKE = 0.95  # Cosine of the angle between directions that count as equal.
 MANY = 12  # Largest number of shapes of a link for which groups of shapes are tried.
 POSTURES = 64  # Postures in which distances of links are compared.
 MORE = 1  # Additional capsules of a link above per_link, if its capsules are too close to others.
+DELAY = 2.0  # [s]
 GAIN = 0.8  # A finer cut reduces the excess of a pair to at most this fraction; not tuned.
 
 
@@ -79,21 +83,41 @@ def capsules_of(
     names = sorted(shapes, key=lambda link: places[link][0])
     links = []
     fitted: dict[bytes, list[Part]] = {}  # Equal arms have equal shapes.
-    for name in names:
-        number, frame = places[name]
-        moved = [shape.moved(frame) for shape in shapes[name]]
-        key = b"/".join(each.points.tobytes() + each.sizes.tobytes() for each in moved)
-        if key not in fitted:
-            fitted[key] = _parts_of(moved, per_link)
-        links.append(Link(number, joints[number - 1].parent if number else -1, list(fitted[key])))
-    if finer and per_link > 1:
-        refine(links, joints, per_link + MORE, margin)
-    if required is not None:
-        known = {frozenset(pair) for pair in allowed}
-        but = {(i, j) for i in range(len(names)) for j in range(len(names)) if {names[i], names[j]} in known}
-        clear(links, joints, np.asarray(required, dtype=float), margin, but)
+    with _progress(len(names) + 2) as step:
+        for name in names:
+            number, frame = places[name]
+            moved = [shape.coarse().moved(frame) for shape in shapes[name]]
+            key = b"/".join(each.points.tobytes() + each.sizes.tobytes() for each in moved)
+            if key not in fitted:
+                fitted[key] = _parts_of(moved, per_link)
+            links.append(Link(number, joints[number - 1].parent if number else -1, list(fitted[key])))
+            step()
+        if finer and per_link > 1:
+            refine(links, joints, per_link + MORE, margin)
+        step()
+        if required is not None:
+            known = {frozenset(pair) for pair in allowed}
+            but = {(i, j) for i in range(len(names)) for j in range(len(names)) if {names[i], names[j]} in known}
+            clear(links, joints, np.asarray(required, dtype=float), margin, but)
+        step()
     fits = [(link.number, part.fit, name) for link, name in zip(links, names) for part in link.parts]
     return [Capsule(number, fit.a, fit.b, fit.radius, name) for number, fit, name in fits]
+
+
+@contextmanager
+def _progress(total: int) -> Iterator[Callable[[], object]]:
+    """A function to call after each step. After DELAY, a bar shows the steps in a terminal and in a notebook.
+
+    Without the extra 'progress', there is no bar.
+    """
+    try:
+        from tqdm.auto import tqdm
+    except ImportError:
+        yield lambda: None
+        return
+    shown = sys.stderr.isatty() or "ipykernel" in sys.modules
+    with tqdm(desc="fitting capsules", total=total, delay=DELAY, leave=False, disable=not shown) as bar:
+        yield bar.update
 
 
 def _joints(
@@ -134,42 +158,50 @@ def refine(links: list[Link], joints: list[TreeJoint], most: int, margin: float)
                 for halves in known[id(part)][1]:
                     finer = [*parts[:k], *halves, *parts[k + 1 :]]
                     tried.append((gaps.excess_with(i, finer, pair), i, finer))
+        tried = sorted(tried, key=lambda each: each[0])[:SEARCHED]
+        for k, (_, i, finer) in enumerate(tried):
+            kept = set(map(id, links[i].parts))
+            finer = [part if id(part) in kept else rough_part(part.shape) for part in finer]
+            tried[k] = gaps.excess_with(i, finer, pair), i, finer
         excess, i, finer = min(tried, key=lambda each: each[0], default=(np.inf, 0, []))
         if excess > GAIN * gaps.excess(*pair):
             given_up.add(pair)
         else:
-            links[i].parts = finer
+            links[i].parts = [part.contained() for part in finer]
 
 
 def _halves(part: Part) -> Iterator[list[Part]]:
     """A part, cut in two."""
-    for u in _directions(*part):
+    for u in _directions(part):
         s = part.shape.points @ u
         for place in np.linspace(s.min(), s.max(), CUTS + 1)[1:-1]:
             halves = [part.shape.between(u, -np.inf, float(place)), part.shape.between(u, float(place), np.inf)]
             if all(len(half.points) for half in halves):
-                yield [Part(half, _rough_fit(half)) for half in halves]
+                yield [rough_part(half, search=False) for half in halves]
 
 
 def _parts_of(shapes: list[Shape], most: int) -> list[Part]:
     """The parts of a link with a capsule each: one part, or several parts if their volume is smaller by 1 - FAIR."""
-    whole = together(shapes)
-    parts = [_part(whole)]
-    methods: list[Callable[[], list[Shape]]] = [lambda: _cut(whole, parts[0].fit, most)]
+    whole = _part(together(shapes))
+    if most == 1:
+        return [whole]
+    tried = [_cut(whole, most)]
     if 1 < len(shapes) <= MANY:
-        methods.append(lambda: _grouped(shapes, most))
-    if most > 1:
-        tried = [[_part(shape) for shape in method()] for method in methods]
-        parts = min([parts, *tried], key=lambda some: _volume(some) * (FAIR if len(some) == 1 else 1.0))
-    return parts
+        tried.append(_grouped(shapes, most))
+    found = [_part(part.shape) for part in min(map(_searched, tried), key=_volume)]
+    return found if _volume(found) < FAIR * whole.fit.volume else [whole]
 
 
 def _volume(parts: list[Part]) -> float:
     return sum(part.fit.volume for part in parts)
 
 
+def _searched(parts: list[Part]) -> list[Part]:
+    return [rough_part(part.shape) for part in parts]
+
+
 def _part(shape: Shape) -> Part:
-    return Part(shape, _fit(shape))
+    return Part(shape, _fit(shape.body))
 
 
 def _fit(shape: Shape) -> Fit:
@@ -181,63 +213,57 @@ def _fit(shape: Shape) -> Fit:
     return fit_capsule(shape.points, shape.sizes)
 
 
-def _cut(whole: Shape, fit: Fit, most: int) -> list[Shape]:
+def _cut(whole: Part, most: int) -> list[Part]:
     """Up to `most` parts between parallel planes, normal to the axis of the capsule or to a principal axis."""
-    cuts = [_slabs(whole, u, most) for u in _directions(whole, fit)]
-    return min(cuts, key=lambda parts: sum(map(_rough_volume, parts)))
+    return min((_searched(_slabs(whole.shape, u, most)) for u in _directions(whole)), key=_volume)
 
 
-def _directions(shape: Shape, fit: Fit) -> list[Array]:
+def _directions(part: Part) -> list[Array]:
     """Normals of cutting planes: the axis of the capsule and the principal axes, without nearly equal directions."""
-    along = fit.b - fit.a
+    along = part.fit.b - part.fit.a
     length = float(np.linalg.norm(along))
     directions = [along / length] if length > 0.0 else []
-    for u in np.linalg.svd(shape.points - shape.points.mean(axis=0), full_matrices=False)[2]:
+    for u in part.shape.principal_axes():
         if all(abs(u @ other) < ALIKE for other in directions):
             directions.append(u)
     return directions
 
 
-def _slabs(whole: Shape, u: Array, most: int) -> list[Shape]:
+def _slabs(whole: Shape, u: Array, most: int) -> list[Part]:
     """Cut by planes normal to u, each where the total volume of the capsules is least, while the volume decreases."""
     s = whole.points @ u
     places = np.linspace(s.min(), s.max(), CUTS + 1)[1:-1]
     bounds = [-np.inf, np.inf]
-    best = [whole]
+    best = [rough_part(whole, search=False)]
     for _ in range(most - 1):
         tried = []
         for place in places:
             if place not in bounds:
                 ends = sorted([*bounds, float(place)])
-                parts = [whole.between(u, low, high) for low, high in pairwise(ends)]
-                if all(len(part.points) for part in parts):
-                    tried.append((sum(map(_rough_volume, parts)), ends, parts))
+                shapes = [whole.between(u, low, high) for low, high in pairwise(ends)]
+                if all(len(shape.points) for shape in shapes):
+                    tried.append((ends, [rough_part(shape, search=False) for shape in shapes]))
         if not tried:
             break
-        volume, ends, parts = min(tried, key=lambda each: each[0])
-        if len(best) > 1 and volume >= sum(map(_rough_volume, best)):
+        ends, parts = min(tried, key=lambda each: _volume(each[1]))
+        if len(best) > 1 and _volume(parts) >= _volume(best):
             break
         bounds, best = ends, parts
     return best
 
 
-def _rough_fit(shape: Shape) -> Fit:
-    return fit_capsule(shape.points, shape.sizes, rough=True)
-
-
-def _rough_volume(shape: Shape) -> float:
-    return _rough_fit(shape).volume
-
-
-def _grouped(shapes: list[Shape], most: int) -> list[Shape]:
+def _grouped(shapes: list[Shape], most: int) -> list[Part]:
     """Shapes joined in pairs, first the pair whose common capsule adds the least volume."""
-    groups = list(shapes)
+    groups = [rough_part(shape, search=False) for shape in shapes]
+    joined: dict[tuple[int, int], Part] = {}
     while len(groups) > most:
-        own = list(map(_rough_volume, groups))
-        pairs = combinations(range(len(groups)), 2)
-        i, j = min(
-            pairs, key=lambda ij: _rough_volume(together([groups[ij[0]], groups[ij[1]]])) - own[ij[0]] - own[ij[1]]
+        for one, other in combinations(groups, 2):
+            if (id(one), id(other)) not in joined:
+                joined[id(one), id(other)] = rough_part(together([one.shape, other.shape]), search=False)
+        one, other = min(
+            combinations(groups, 2),
+            key=lambda pair: joined[id(pair[0]), id(pair[1])].fit.volume - _volume(list(pair)),
         )
-        joined = together([groups[i], groups[j]])
-        groups = [group for k, group in enumerate(groups) if k not in (i, j)] + [joined]
+        groups = [group for group in groups if group is not one and group is not other]
+        groups.append(joined[id(one), id(other)])
     return groups

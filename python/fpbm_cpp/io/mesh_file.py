@@ -7,6 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from numpy.typing import NDArray
+
 from .._types import Array
 from ..errors import extra
 
@@ -29,8 +31,10 @@ def find_mesh(urdf: Path, name: str) -> Path | None:
     return None
 
 
-def read_mesh(file: Path) -> Array:
-    """The edges of a mesh's triangles, shape (E, 2, 3) [m]: STL, OBJ or DAE.
+def read_mesh(file: Path) -> tuple[Array, NDArray[np.intp]]:
+    """Corners (C, 3) [m] of a mesh's triangles and indices (E, 2) of the corners of its edges: STL, OBJ or DAE.
+
+    Corners at equal positions are one corner.
 
     As in ROS, the unit of a DAE file applies and its up axis is ignored. No other file is opened: neither materials nor
     textures. Raises ValueError if the mesh is not valid, ImportError if trimesh or pycollada is missing.
@@ -55,6 +59,14 @@ def read_mesh(file: Path) -> Array:
     if not len(faces) or not np.all(np.isfinite(vertices)):
         problem = "its vertices are not finite" if len(faces) else "has no triangles"
         raise ValueError(f"mesh {str(file)!r}: {problem}: must have triangles of finite vertices: export it again")
-    pairs = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    edges: Array = vertices[np.unique(pairs, axis=0)]
-    return edges
+    each = np.ascontiguousarray(vertices + 0.0).view([("", float)] * 3).ravel()  # -0.0 + 0.0 is 0.0.
+    _, first, corner = np.unique(each, return_index=True, return_inverse=True)
+    return vertices[first], edges_of(corner[faces][:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2))
+
+
+def edges_of(pairs: NDArray[np.intp]) -> NDArray[np.intp]:
+    """The different pairs of two different corners (E, 2), in either order."""
+    low, high = np.sort(pairs, axis=1).T
+    count = int(high.max(initial=0)) + 1
+    both = np.unique(low[low < high] * count + high[low < high])
+    return np.column_stack([both // count, both % count])

@@ -1,9 +1,11 @@
-"""Collision geometry of the links of a URDF file, as edges and balls whose convex hulls contain it."""
+"""Collision geometry of the links of a URDF file, as corners, edges and balls whose convex hulls contain it."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import product
 from pathlib import Path
 
@@ -12,11 +14,13 @@ from numpy.typing import NDArray
 
 from .._types import Array
 from ..errors import extra
-from .mesh_file import find_mesh, read_mesh
+from .mesh_file import edges_of, find_mesh, read_mesh
 from .urdf import pose
 from .xml_file import Element, Kept, named, read_xml
 
 SIDES = 64  # Sides of the prism around a cylinder; the prism is 0.12 % wider than the cylinder.
+MANY = 2000  # Largest number of corners of a mesh of which no approximation is made.
+CELLS = 64  # Cells of an approximation along its longest side.
 SHAPES = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",), "capsule": ("radius", "length")}
 KEPT: Kept = {
     ("robot",): {"link": ("name",)},
@@ -26,81 +30,112 @@ KEPT: Kept = {
 }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Shape:
     """A body in a link's frame: the faces between its edges, and balls.
 
-    edges: shape (E, 2, 3). centers and radii of the balls: (B, 3) and (B,). cylinder: radius, length and frame if the
-    body is a single cylinder; edges then form a prism around the cylinder. All in metres.
+    corners: shape (C, 3). edges: indices of the two corners of each edge, shape (E, 2). centers and radii of the balls:
+    (B, 3) and (B,). cylinder: radius, length and frame if the body is a single cylinder; edges then form a prism around
+    the cylinder. fine: the body of which this shape is an approximation with fewer corners; None if it is the body. All
+    in metres.
     """
 
-    edges: Array = field(default_factory=lambda: np.zeros((0, 2, 3)))
+    corners: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    edges: NDArray[np.intp] = field(default_factory=lambda: np.zeros((0, 2), dtype=np.intp))
     centers: Array = field(default_factory=lambda: np.zeros((0, 3)))
     radii: Array = field(default_factory=lambda: np.zeros(0))
     cylinder: tuple[float, float, Array] | None = None
-    sides: Array = field(default_factory=lambda: np.zeros((0, 2, 3)))  # Sides of sections by cutting planes.
+    fine: Callable[[], Shape] | None = None
 
     @property
     def points(self) -> Array:
-        """Ends of edges and centers of balls."""
-        return np.vstack([self.edges.reshape(-1, 3), self.centers])
+        """Corners, and centers of balls."""
+        return np.vstack([self.corners, self.centers])
 
     @property
     def sizes(self) -> Array:
-        """The radius about each point: 0 about ends of edges."""
-        return np.concatenate([np.zeros(2 * len(self.edges)), self.radii])
+        """The radius about each point: 0 about corners."""
+        return np.concatenate([np.zeros(len(self.corners)), self.radii])
+
+    @cached_property
+    def body(self) -> Shape:
+        """The body with all its corners."""
+        return self if self.fine is None else self.fine()
+
+    def principal_axes(self) -> Array:
+        """Unit vectors (3, 3), from the longest to the shortest extent; each edge counts equally."""
+        points = np.vstack([self.corners[self.edges.ravel()], self.centers])
+        away = points - points.mean(axis=0)
+        axes: Array = np.linalg.eigh(away.T @ away)[1].T[::-1]
+        return axes
 
     def moved(self, frame: Array) -> Shape:
         R, p = frame[:3, :3], frame[:3, 3]
         cylinder = self.cylinder and (*self.cylinder[:2], frame @ self.cylinder[2])
-        return Shape(self.edges @ R.T + p, self.centers @ R.T + p, self.radii, cylinder, self.sides @ R.T + p)
+        fine = self.fine and (lambda: self.body.moved(frame))
+        return Shape(self.corners @ R.T + p, self.edges, self.centers @ R.T + p, self.radii, cylinder, fine)
 
     def between(self, u: Array, low: float, high: float) -> Shape:
-        """The part of the body in low <= u x < high; a ball belongs to the part that contains its center.
+        """The part of the body in low <= u x <= high; a ball belongs to the part with low <= u x < high of its center.
 
         A plane that cuts a face cuts its edges: the remaining parts of the edges and of the face have the same hull. At
         the plane, the face gets a new edge, which a later plane may cut. The new edge is inside the convex hull of the
-        section; the sides of this hull are kept. If a plane cuts a side, the side becomes an edge.
+        section; the sides of this hull become edges.
         """
-        kept, cut = _clipped(self.edges, u, low, high)
-        sides_kept, sides_cut = _clipped(self.sides, u, low, high)
-        edges = np.concatenate([kept, sides_kept[sides_cut]])
-        ends = np.concatenate([kept[cut], sides_kept[sides_cut]]).reshape(-1, 3)
-        sections = [_section(ends, u, bound) for bound in (low, high) if np.isfinite(bound)]
+        s = self.corners @ u
+        side = np.where(s < low, -1, np.where(s > high, 1, 0))
+        inside = side == 0
+        ends = side[self.edges]
+        edges = self.edges[(ends[:, 0] * ends[:, 1] != 1) & np.any(ends != 0, axis=1)]  # The edges that a plane cuts.
+        row, column = np.nonzero(side[edges])
+        out, other = edges[row, column], edges[row, 1 - column]
+        share = (np.where(side[out] < 0, low, high) - s[out]) / (s[other] - s[out])
+        corners = [self.corners[inside], self.corners[out] + share[:, None] * (self.corners[other] - self.corners[out])]
+        index = np.cumsum(inside) - 1
+        cut = index[edges]
+        cut[row, column] = np.count_nonzero(inside) + np.arange(len(row))
+        corners = np.vstack(corners)
+        sides = [_section(corners, u, bound) for bound in (low, high) if np.isfinite(bound)]
         mine = (self.centers @ u >= low) & (self.centers @ u < high)
         return Shape(
-            edges, self.centers[mine], self.radii[mine], sides=np.concatenate([sides_kept[~sides_cut], *sections])
+            corners,
+            np.concatenate([index[self.edges[np.all(ends == 0, axis=1)]], cut, *sides]),
+            self.centers[mine],
+            self.radii[mine],
+            fine=self.fine and (lambda: self.body.between(u, low, high)),
         )
 
+    def coarse(self) -> Shape:
+        """This body, or an approximation with fewer corners if it has many: one corner for each cell of a grid.
 
-def _clipped(edges: Array, u: Array, low: float, high: float) -> tuple[Array, NDArray[np.bool_]]:
-    """The parts of edges in low <= u x <= high, and which of these edges a plane cuts."""
-    s = edges @ u
-    rise = s[:, 1] - s[:, 0]
-    flat = rise == 0.0
-    enter, leave = ((bound - s[:, 0]) / np.where(flat, 1.0, rise) for bound in (low, high))
-    enter, leave = np.minimum(enter, leave), np.maximum(enter, leave)
-    kept = (s.max(axis=1) >= low) & (s.min(axis=1) <= high)
-    shares = np.stack([np.where(flat, 0.0, enter), np.where(flat, 1.0, leave)], axis=1)[kept].clip(0.0, 1.0)
-    start, extent = edges[kept, :1], edges[kept, 1:] - edges[kept, :1]
-    left = np.where(shares[:, :, None] == 1.0, edges[kept, 1:], start + shares[:, :, None] * extent)
-    return left, (shares[:, 0] > 0.0) | (shares[:, 1] < 1.0)
+        The corner of a cell is the farthest corner from the center of the body.
+        """
+        if len(self.corners) <= MANY:
+            return self
+        low, high = self.corners.min(axis=0), self.corners.max(axis=0)
+        order = np.argsort(-np.linalg.norm(self.corners - (low + high) / 2, axis=1), kind="stable")
+        cells = ((self.corners[order] - low) * (CELLS / np.max(high - low))).astype(np.intp)
+        _, first, cell = np.unique(cells @ [(CELLS + 1) ** 2, CELLS + 1, 1], return_index=True, return_inverse=True)
+        index = np.empty(len(order), dtype=np.intp)
+        index[order] = cell
+        edges = edges_of(index[self.edges])
+        return Shape(self.corners[order[first]], edges, self.centers, self.radii, fine=lambda: self)
 
 
-def _section(points: Array, u: Array, bound: float) -> Array:
-    """Sides of the convex hull of the points on a plane u x = bound."""
+def _section(corners: Array, u: Array, bound: float) -> NDArray[np.intp]:
+    """Sides of the convex hull of the corners on a plane u x = bound: indices (E, 2) of their ends."""
     spatial = extra("scipy.spatial", "a capsule that fits", "clearance")
-    size = float(np.max(np.abs(points), initial=0.0))
-    on = points[np.abs(points @ u - bound) <= 1e-9 * size]
+    size = float(np.max(np.abs(corners), initial=0.0))
+    on = np.flatnonzero(np.abs(corners @ u - bound) <= 1e-9 * size)
     if len(on) < 2:
-        return np.zeros((0, 2, 3))
+        return np.zeros((0, 2), dtype=np.intp)
+    points = corners[on]
     across = np.linalg.svd(u[None, :])[2][1:]
     try:
-        corners = spatial.ConvexHull(on @ across.T).simplices
+        sides: NDArray[np.intp] = on[spatial.ConvexHull(points @ across.T).simplices]
     except spatial.QhullError:  # The points are on a line.
-        along = (on - on[0]) @ np.linalg.svd(on - on.mean(axis=0), full_matrices=False)[2][0]
-        corners = np.array([[np.argmin(along), np.argmax(along)]])
-    sides: Array = on[corners]
+        along = (points - points[0]) @ np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2][0]
+        sides = on[[[np.argmin(along), np.argmax(along)]]]
     return sides
 
 
@@ -108,11 +143,14 @@ def together(shapes: list[Shape]) -> Shape:
     """Several shapes joined to one shape."""
     if len(shapes) == 1:
         return shapes[0]
+    starts = np.cumsum([0, *(len(each.corners) for each in shapes)])
+    coarse = any(each.fine is not None for each in shapes)
     return Shape(
-        edges=np.concatenate([each.edges for each in shapes]),
+        corners=np.concatenate([each.corners for each in shapes]),
+        edges=np.concatenate([each.edges + start for each, start in zip(shapes, starts)]),
         centers=np.concatenate([each.centers for each in shapes]),
         radii=np.concatenate([each.radii for each in shapes]),
-        sides=np.concatenate([each.sides for each in shapes]),
+        fine=(lambda: together([each.body for each in shapes])) if coarse else None,
     )
 
 
@@ -123,7 +161,7 @@ def read_shapes(path: str | os.PathLike[str]) -> dict[str, list[Shape]]:
     library for meshes is missing.
     """
     name = os.fsdecode(path)
-    meshes: dict[str, Array] = {}
+    meshes: dict[str, tuple[Array, NDArray[np.intp]]] = {}
     try:
         links = named(read_xml(name, KEPT).all("link"))
         return {
@@ -135,7 +173,7 @@ def read_shapes(path: str | os.PathLike[str]) -> dict[str, list[Shape]]:
         raise ValueError(f"{name}: {error}") from None
 
 
-def _shape(collision: Element, owner: str, urdf: Path, meshes: dict[str, Array]) -> Shape:
+def _shape(collision: Element, owner: str, urdf: Path, meshes: dict[str, tuple[Array, NDArray[np.intp]]]) -> Shape:
     collision.require_one_each(f"{owner}: <collision>")
     geometry = next((part.parts for part in collision.parts if part.tag == "geometry"), [])
     if len(geometry) != 1:
@@ -158,7 +196,7 @@ def _primitive(element: Element, owner: str) -> Shape:
         raise ValueError(f"{owner}: {element.tag} of {' '.join(f'{size:g}' for size in sizes)}: must not be negative")
     if element.tag == "box":
         corners = np.array(list(product((-0.5, 0.5), repeat=3))) * sizes
-        return Shape(np.array([[p, q] for i, p in enumerate(corners) for q in corners[:i] if np.sum(p != q) <= 1]))
+        return Shape(corners, np.array([[i, j] for i in range(8) for j in range(i) if (i ^ j) in (1, 2, 4)]))
     if element.tag == "sphere":
         return Shape(centers=np.zeros((1, 3)), radii=np.array(sizes))
     radius, length = sizes
@@ -167,13 +205,13 @@ def _primitive(element: Element, owner: str) -> Shape:
         return Shape(centers=ends, radii=np.array([radius, radius]))
     turn = 2 * np.pi * np.arange(SIDES) / SIDES
     rim = np.column_stack([np.cos(turn), np.sin(turn), 0 * turn]) * radius / np.cos(np.pi / SIDES)
-    rims = [np.stack([rim + end, np.roll(rim, 1, axis=0) + end], axis=1) for end in ends]
-    return Shape(
-        np.vstack([*rims, np.stack([rim + ends[0], rim + ends[1]], axis=1)]), cylinder=(radius, length, np.eye(4))
-    )
+    i = np.arange(SIDES)
+    round_first = np.column_stack([i, np.roll(i, 1)])
+    edges = np.vstack([round_first, round_first + SIDES, np.column_stack([i, i + SIDES])])
+    return Shape(np.vstack([rim + ends[0], rim + ends[1]]), edges, cylinder=(radius, length, np.eye(4)))
 
 
-def _mesh(element: Element, owner: str, urdf: Path, meshes: dict[str, Array]) -> Shape:
+def _mesh(element: Element, owner: str, urdf: Path, meshes: dict[str, tuple[Array, NDArray[np.intp]]]) -> Shape:
     name = element.attributes.get("filename")
     if not name:
         raise ValueError(f'{owner} has no <mesh filename="...">')
@@ -184,4 +222,5 @@ def _mesh(element: Element, owner: str, urdf: Path, meshes: dict[str, Array]) ->
             raise ValueError(f"{owner}: mesh {name!r} is not found: {where}")
         meshes[name] = read_mesh(file)
     scale = Element("geometry", element.line, {}, [element]).numbers("mesh", "scale", [1.0] * 3, owner)
-    return Shape(meshes[name] * scale)
+    corners, edges = meshes[name]
+    return Shape(corners * scale, edges)

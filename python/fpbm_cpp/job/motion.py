@@ -23,9 +23,9 @@ from ..io import write_whole
 from ..motion.run import Paths, Run
 from ..motion.simulation import simulate, task_and_paths, track, without_limits
 from ..parameter import REQUIRED
-from ..paths import PATH_OPTIONS, Path
+from ..paths import PATH_OPTIONS, Circle, Path
 from ..robots import Robot
-from ..schemes import Scheme
+from ..schemes import MVN, Scheme
 from ..table import is_by_task, to_table
 from ..task_bounds import TaskBounds
 from ..tasks import FrameTask, Stack
@@ -69,6 +69,10 @@ FEW_TASKS = ({"level": 0, "kind": "position"}, {"level": 1, "kind": "axis"})
 MOST = 3**7  # Largest number of candidate postures.
 GOOD = 0.8  # Accepted inverse condition number, relative to the best.
 
+
+CIRCLE = 0.08  # Default radius of a circle, in reaches: 0.1 m for the preset arms, whose reach is 1.2 m to 1.7 m.
+HALVINGS = 4  # Smaller radii that are tried.
+TRIAL_GAIN, TRIAL_STEP, TRIAL_ERROR = 10.0, 0.01, 1e-3  # [1/s], [s], [m]
 
 Jacobian = Callable[[Array], Array]
 
@@ -196,6 +200,7 @@ def filled(job: Table, arm: Arm | Robot) -> Table:
         if "q0" not in run:
             preset = job["arm"].get("name")
             run["q0"] = list(READY.get(preset) or ready(arm, kind, stack))
+    pieces = _scaled(path, pieces, arm, run if stack is None else None)
     full = {**job, "path": pieces, "scheme": scheme, "run": run}
     if "bounds" in job:
         full["limits"] = job.get("limits", {})  # Without limits, no arm can stop in time.
@@ -277,6 +282,54 @@ def _filled_path(said: Table, arm: Arm | Robot) -> Table:
         return whole
     shape = make("path", {key: whole[key] for key in whole if key not in PATH_OPTIONS})
     return {"in_plane": "yz", **whole} if len(shape.sample(0.0)[0]) == 2 else whole
+
+
+def _scaled(said: Any, full: Any, arm: Arm | Robot, run: Table | None) -> Any:
+    """The paths with the default radius of circles: CIRCLE times the reach, halved until the tip can follow the path.
+
+    run: the options of the run; None for a stack, whose paths are not tried.
+    """
+    radius = float(f"{CIRCLE * _reach(arm):.1g}")
+    paths = _with_radius(said, full, radius)
+    if radius == 0.0 or paths == _with_radius(said, full, 2 * radius):
+        return full
+    for _ in range(HALVINGS):
+        if run is None or _can_follow(arm, make("path", paths, arm), run):
+            break
+        radius /= 2
+        paths = _with_radius(said, full, radius)
+    return paths
+
+
+def _with_radius(said: Any, full: Any, radius: float) -> Any:
+    """The filled paths, with this radius for each circle of which the job does not say the radius."""
+    if isinstance(full, list):
+        return [_with_radius(*each, radius) for each in zip(said, full)]
+    if is_by_task(full):
+        return {task: _with_radius(said[task], full[task], radius) for task in full}
+    return {**full, "radius": radius} if full["kind"] == Circle.kind and "radius" not in said else full
+
+
+def _reach(arm: Arm | Robot) -> float:
+    """Bound on the distance of a tip from the base [m], with prismatic joints at zero."""
+    if isinstance(arm, PlanarArm):
+        return float(np.sum(arm.lengths))
+    far = [0.0]
+    for i, each in enumerate(arm.joints):
+        joint, parent = (each.joint, each.parent) if isinstance(arm, Robot) else (each, i)
+        far.append(far[parent] + float(np.linalg.norm(joint.placement[:3, 3])))
+    return max(far) if isinstance(arm, Robot) else far[-1] + float(np.linalg.norm(arm.tip[:3, 3]))
+
+
+def _can_follow(arm: Arm | Robot, path: Path, run: Table) -> bool:
+    """Whether MVN follows the path within the bounds on position and velocity. If the job is wrong: true."""
+    try:
+        found = simulate(arm, path, MVN(k=TRIAL_GAIN), run["q0"], dt=TRIAL_STEP, task=run["task"], partial=True)
+    except ValueError:
+        return True  # prepare() reports the error.
+    limits = arm.limits
+    inside = (found.q >= limits.lower) & (found.q <= limits.upper) & (np.abs(found.qd) <= limits.velocity)
+    return bool(found.status) and found.max_error() < TRIAL_ERROR and bool(np.all(inside))
 
 
 def _text(value: Any) -> str:

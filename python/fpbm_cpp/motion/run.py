@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -16,6 +16,7 @@ from ..arms import Arm, JointLimits
 from ..paths import Path
 from ..robots import Robot
 from ..schemes import Scheme
+from ..shown import html_table, number
 from ..skeleton import task_frames
 from ..tasks import FrameTask, PoseTask, PositionTask, Stack
 from .task_frames import task_jacobians
@@ -31,31 +32,56 @@ LIMITED = ("scale", "saturated", "clearance")  # Arrays of runs within joint lim
 OF_STACKS = ("scales", "task_errors")
 
 
+LONGEST = 200  # Characters of a scheme or a path in the HTML form of a run.
+ON_PATH = 1e-3  # Largest distance of the tip from its path in a complete motion [m].
+SHRINK = "Make the path smaller, or choose another start posture q0"
+REMEDIES = {
+    Status.OK: "Give the scheme larger gains (k1 and k2, or k), or shorten dt.",
+    Status.COARSE: "Shorten dt.",
+    Status.DAMPED: f"{SHRINK}, so that the path avoids singular postures.",
+    Status.SLOWED: f"Increase the duration of the path. {SHRINK}.",
+    Status.BLOCKED: "Move the path away from the nearest shape or task bound.",
+    Status.RECOVERING: f"{SHRINK}, so that the path is in the workspace.",
+    Status.STALLED: f"{SHRINK}, so that the path is in the workspace.",
+}
+
+
 @dataclass(frozen=True)
 class RunStatus:
     """End of a motion: status code, time of the last sample [s], and joint positions q [rad], shape (n,).
 
-    If the motion is complete, the code is OK, COARSE, DAMPED, SLOWED, BLOCKED or STALLED, and the status is true.
+    If the motion ends at the end of its time, the code is OK, COARSE, DAMPED, SLOWED, BLOCKED or STALLED, and the
+    status is true. distance is the largest distance of the tip from its path [m].
     """
 
     code: Status
     time: float
     q: Array
+    distance: float = 0.0
 
     @property
     def ok(self) -> bool:
-        """Whether the motion is complete."""
+        """Whether the motion ends at the end of its time."""
         return not failed(self.code)
 
     @property
+    def left_path(self) -> bool:
+        """Whether the tip was farther than 1 mm from its path."""
+        return self.distance > ON_PATH
+
+    @property
     def advice(self) -> str:
-        """What to do; empty if the code is OK."""
-        return advice(self.code)
+        """What to do; empty if the code is OK and the tip did not leave its path."""
+        return REMEDIES.get(self.code, advice(self.code)) if self.ok and self.left_path else advice(self.code)
 
     def __bool__(self) -> bool:
         return self.ok
 
     def __str__(self) -> str:
+        if self.ok and self.left_path:
+            cause = f": at times, {message(self.code)}" if self.code is not Status.OK else ""
+            off = f"the tip was up to {self.distance:.3g} m from its path{cause}. {self.advice}"
+            return f"ended, t = {self.time:g} s; {off}"
         if self.ok:
             remark = "" if self.code is Status.OK else f"; at times, {message(self.code)}. {self.advice}"
             return f"complete, t = {self.time:g} s{remark}"
@@ -116,6 +142,9 @@ class Run:
     scales: Array | None = None
     task_errors: Array | None = None
     provenance: dict[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "status", replace(self.status, distance=self.max_error()))
 
     def max_error(self) -> float:
         """Largest distance of the tip from its reference [m]."""
@@ -224,14 +253,17 @@ class Run:
         arrays = {name: getattr(self, name) for name in (*ARRAYS, *LIMITED, *OF_STACKS)}
         return {name: np.asarray(array) for name, array in arrays.items() if array is not None}
 
-    def plot(self, *, panels: Sequence[str] | None = None, dark: bool = False) -> Figure:
+    def plot(
+        self, *, panels: str | Sequence[str] | None = None, dark: bool = False, bounds: bool = False
+    ) -> Figure:
         """Figure of the motion on one page: arm snapshots, tip error, joints, limits, manipulability.
 
-        panels: names of other panels, from fpbm_cpp.plot.PANELS. dark: dark background. Needs matplotlib.
+        A notebook shows the figure. panels: names of other panels, from fpbm_cpp.plot.panels.PANELS. dark: dark
+        background. bounds: whether all finite bounds of the joints are shown. Needs matplotlib.
         """
         from ..plot import plot_run
 
-        return plot_run(self, panels=panels, dark=dark)
+        return plot_run(self, panels=panels, dark=dark, bounds=bounds)
 
     def view(self, *, urdf: str | os.PathLike[str] | None = None, **how: Any) -> None:
         """Show the motion in the browser until Ctrl-C; urdf, host, port, open_browser and errors as for view()."""
@@ -323,3 +355,19 @@ class Run:
             f"<Run of {len(self.t)} samples: {self.scheme!r} on {self.arm} along {self.path!r}; "
             f"largest tip error {self.max_error():.3g} m; {self.status}>"
         )
+
+    def _repr_html_(self) -> str:
+        rows = [
+            ["scheme", _brief(self.scheme)],
+            ["arm", str(self.arm)],
+            ["path", _brief(self.path)],
+            ["samples", len(self.t)],
+            ["largest tip error", f"{number(self.max_error())} m"],
+            ["status", str(self.status)],
+        ]
+        return html_table("Run", ["", ""], rows)
+
+
+def _brief(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= LONGEST else f"{text[:LONGEST]} …"

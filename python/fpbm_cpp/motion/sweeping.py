@@ -15,6 +15,7 @@ from ..arms import Arm, JointLimits, limits_of
 from ..errors import SweepInterrupted, extra, wrong
 from ..paths import Path
 from ..robots import Robot
+from ..shown import html_table, number
 from ..schemes import Scheme
 from ..tasks import Stack
 from .run import LIMITED, Paths
@@ -107,6 +108,16 @@ class Sweep:
         error, velocity = self.max_error[i, ok].max(), self.peak_velocity[i, ok].max()
         worst = f"tip error up to {error:.1e} m, joints up to {velocity:.3g} rad/s"
         return f"{text}; {worst}, manipulability down to {self.manipulability[i, ok].min():.3g}"
+
+    def _repr_html_(self) -> str:
+        headings = ["scheme", "complete", "tip error [m]", "peak qd [rad/s]", "manipulability"]
+        rows: list[list[str]] = []
+        for scheme, ok, *figures in zip(
+            self.schemes, self.ok, self.max_error, self.peak_velocity, -self.manipulability
+        ):
+            worst = [number(abs(float(np.max(each[ok])))) if ok.any() else "" for each in figures]
+            rows.append([repr(scheme), f"{ok.sum()} of {ok.size}", *worst])
+        return html_table(repr(self).strip("<>"), headings, rows)
 
     def __repr__(self) -> str:
         counts = {"complete": self.ok, "stopped early": self.done & ~self.ok, "not run": ~self.done}

@@ -10,32 +10,40 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .._types import Array
+from ..motion.comparison import named_runs
 from ..motion.run import Run
 from .lines import envelope, foot_height, foot_legend, from_zero, in_decades, label_time_below, over_time
 from .panels import Panel, choose, joint_names, unit_of
 from .theme import COLUMN, DARK, LIGHT, PAGE, TITLE_ROW, Theme, dress, sheet
 
 ROW, COMPARED_ROW, SLIDE = 1.45, 1.75, 4.0  # [in]
+ONE = 2.4  # Height of a single panel [in].
 
 
 def plot_run(
-    run: Run, title: str | None = None, panels: str | Sequence[str] | None = None, *, dark: bool = False
+    run: Run,
+    title: str | None = None,
+    panels: str | Sequence[str] | None = None,
+    *,
+    dark: bool = False,
+    bounds: bool = False,
 ) -> Figure:
     """Figure of a run, up to its end: the arm on the left, the first panels beside the arm, the other panels below.
 
     The text is 9 points high. The figure is two columns of a paper wide, or one column for few panels without an arm.
     The default title has the scheme and the path. panels are names from PANELS; default: all except the components of
     the error. Panels without data are left out: for example 'saturation' without joint limits, 'clearance' without a
-    clearance, 'axis_orientation_errors' if the task is a position. dark: dark background. Raises ValueError if a panel
-    is unknown or given twice, or no panel has data.
+    clearance, 'axis_orientation_errors' if the task is a position. dark: dark background. bounds: whether the panels of
+    the joints show all finite bounds; otherwise, only bounds close to a joint. A notebook shows the figure. Raises
+    ValueError if a panel is unknown or given twice, or no panel has data.
     """
     chosen = choose(run, panels)
     if title is None:
-        title = _title(run, 85 if len(_columns(chosen)[0]) > 1 else 42)
-    return lay_out(run, title, chosen, DARK if dark else LIGHT, lettered=len(chosen) > 1)[0]
+        title = _title(run, 85 if len(_columns(chosen)[0]) > 1 else 42, 2 if len(chosen) > 1 else 1)
+    return lay_out(run, title, chosen, DARK if dark else LIGHT, lettered=len(chosen) > 1, bounds=bounds)[0]
 
 
-def _title(run: Run, width: int) -> str:
+def _title(run: Run, width: int, lines_each: int) -> str:
     """Scheme and path, in lines of at most width characters, and the time of an early stop."""
 
     def short(part: object) -> str:
@@ -47,11 +55,11 @@ def _title(run: Run, width: int) -> str:
     lines = [whole] if len(whole) <= width else [short(run.scheme), along]
     if not run.status:
         lines.append(f"stopped after t = {run.status.time:g} s")
-    return "\n".join(row for line in lines for row in textwrap.wrap(line, width, max_lines=2, placeholder=" …"))
+    return "\n".join(row for line in lines for row in textwrap.wrap(line, width, max_lines=lines_each, placeholder=" …"))
 
 
 def lay_out(
-    run: Run, title: str, panels: Mapping[str, Panel], theme: Theme, lettered: bool
+    run: Run, title: str, panels: Mapping[str, Panel], theme: Theme, lettered: bool, bounds: bool = False
 ) -> tuple[Figure, dict[str, Any]]:
     """Figure of these panels, and the axes of each."""
     columns, rows = _columns(panels)
@@ -59,7 +67,7 @@ def lay_out(
     foot = foot_height(joint_names(run.arm) if any(panel.of_joints for panel in panels.values()) else [], width)
     # Up to three panels beside the arm fill a slide of 16:9.
     slide = SLIDE - foot - (TITLE_ROW * (title.count("\n") + 1) if title else 0.0)
-    body = slide if "arm" in panels and rows <= 3 else ROW * rows + 0.25
+    body = slide if "arm" in panels and rows <= 3 else ROW * rows + 0.25 if len(panels) > 1 else ONE
     figure, (upper, *lower) = sheet(width, [body, foot] if foot else [body], title, theme)
     drawn: dict[str, Any] = {}
     for side, column in zip(upper.subfigures(1, len(columns), squeeze=False)[0], columns):
@@ -69,7 +77,7 @@ def lay_out(
             drawn[name] = side.add_subplot(cell, projection="3d" if space else None)
     for letter, (name, axes) in zip("abcdefghijkl", drawn.items()):
         dress(axes, theme, f"({letter}) {panels[name].heading}" if lettered else panels[name].heading)
-        panels[name].draw(axes, run, theme)
+        panels[name].draw(axes, run, theme, *([bounds] if panels[name].of_joints else []))
     for column in columns:
         label_time_below([drawn[name] for name in column if name != "arm"])
     for part in lower:
@@ -113,7 +121,7 @@ def compare(runs: Sequence[Run] | Mapping[str, Run], title: str = "", *, dark: b
     pose, also the orientation error and the distance of the joints from their start. dark: dark background. Raises
     ValueError if there is no run.
     """
-    named = dict(runs) if isinstance(runs, Mapping) else _named(runs)
+    named = named_runs(runs)
     if not named:
         raise ValueError("runs: must hold at least one run")
     theme, shown = DARK if dark else LIGHT, list(named.values())
@@ -134,12 +142,3 @@ def compare(runs: Sequence[Run] | Mapping[str, Run], title: str = "", *, dark: b
         label_time_below(list(column))
     foot_legend(lower, theme, [grid[0, 0]], PAGE, list(named))
     return figure
-
-
-def _named(runs: Sequence[Run]) -> dict[str, Run]:
-    """Runs by the names of their schemes, with numbers for equal names."""
-    names = [type(run.scheme).__name__ for run in runs]
-    return {
-        name if names.count(name) == 1 else f"{name} {names[: i + 1].count(name)}": run
-        for i, (name, run) in enumerate(zip(names, runs))
-    }

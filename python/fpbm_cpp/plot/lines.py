@@ -11,6 +11,8 @@ from .._types import Array
 from .theme import LINE, TEXT, Theme
 
 FOOT_ROW = 0.19  # Height of a row of the legend below all panels [in].
+TOP_ROW = 0.19  # Height of a row of a legend inside a panel, relative to the panel.
+PANEL_WIDTH = 3.05  # Width of a panel [in].
 SPANS = 400
 LEAST = float(np.finfo(float).eps)
 
@@ -68,9 +70,17 @@ def head_legend(axes: Any, theme: Theme, handles: Sequence[Any] | None = None) -
     _legend(axes, theme, handles=handles or axes.get_lines(), ncols=9, handlelength=1.5, **place)
 
 
-def inner_legend(axes: Any, theme: Theme) -> None:
-    """Legend of a few lines with long names, in the axes, where the legend covers least."""
-    _legend(axes, theme, loc="best", labelspacing=0.2, borderpad=0.2)
+def top_legend(axes: Any, theme: Theme) -> None:
+    """Legend of a few lines with long names, in the axes above all lines; the y axis gets longer."""
+    names = axes.get_legend_handles_labels()[1]
+    if not names:
+        return
+    across = _across(names, PANEL_WIDTH)
+    room = min(TOP_ROW * ceil(len(names) / across) + 0.02, 0.7)
+    scale = axes.yaxis.get_transform()
+    low, high = scale.transform(np.array(axes.get_ylim()))
+    axes.set_ylim(*scale.inverted().transform(np.array([low, low + (high - low) / (1.0 - room)])))
+    _legend(axes, theme, loc="upper left", ncols=across, labelspacing=0.2, borderpad=0.2)
 
 
 def side_legend(axes: Any, theme: Theme) -> None:

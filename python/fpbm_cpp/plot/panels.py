@@ -16,7 +16,7 @@ from ..motion.task_errors import error_parts
 from ..motion.task_frames import tracks
 from ..robots import Robot
 from ..skeleton import joint_labels, joint_points, joint_units, task_frames
-from .lines import draw_lines, envelope, from_zero, head_legend, in_decades, inner_legend, over_time, side_legend
+from .lines import draw_lines, envelope, from_zero, head_legend, in_decades, over_time, side_legend, top_legend
 from .theme import LIGHT, LINE, TEXT, Theme, dress
 
 __all__ = ["OVERVIEW", "PANELS", "arm_panel", "min_singular_values", "null_space_velocities"]
@@ -147,19 +147,19 @@ def _components(axes: Any, run: Run, theme: Theme, error: Array, names: Sequence
     head_legend(axes, theme)
 
 
-def position_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
-    """Joint positions, and bounds that are close to a joint."""
-    _joints(axes, run, theme, run.q, r"$q$", "", run.limits.lower, run.limits.upper)
+def position_panel(axes: Any, run: Run, theme: Theme = LIGHT, bounds: bool = False) -> None:
+    """Joint positions, and bounds that are close to a joint, or all finite bounds."""
+    _joints(axes, run, theme, run.q, r"$q$", "", run.limits.lower, run.limits.upper, bounds)
 
 
-def velocity_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
-    """Joint velocities, and bounds that are close to a joint."""
-    _joints(axes, run, theme, run.qd, r"$\dot q$", "/s", -run.limits.velocity, run.limits.velocity)
+def velocity_panel(axes: Any, run: Run, theme: Theme = LIGHT, bounds: bool = False) -> None:
+    """Joint velocities, and bounds that are close to a joint, or all finite bounds."""
+    _joints(axes, run, theme, run.qd, r"$\dot q$", "/s", -run.limits.velocity, run.limits.velocity, bounds)
 
 
-def acceleration_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
-    """Joint accelerations, and bounds that are close to a joint."""
-    _joints(axes, run, theme, run.qdd, r"$\ddot q$", "/s²", -run.limits.acceleration, run.limits.acceleration)
+def acceleration_panel(axes: Any, run: Run, theme: Theme = LIGHT, bounds: bool = False) -> None:
+    """Joint accelerations, and bounds that are close to a joint, or all finite bounds."""
+    _joints(axes, run, theme, run.qdd, r"$\ddot q$", "/s²", -run.limits.acceleration, run.limits.acceleration, bounds)
 
 
 def joint_names(arm: Arm | Robot) -> list[str]:
@@ -175,15 +175,18 @@ def unit_of(runs: Sequence[Run], per: str) -> str:
 
 
 def _joints(
-    axes: Any, run: Run, theme: Theme, values: Array, symbol: str, per: str, lower: Array, upper: Array
+    axes: Any, run: Run, theme: Theme, values: Array, symbol: str, per: str, lower: Array, upper: Array, every: bool
 ) -> None:
-    """A line for each joint and for each close bound: in the colour of its joint, or in ink for several joints."""
+    """A line for each joint and for each close bound: in the colour of its joint, or in ink for several joints.
+
+    every: whether all finite bounds are drawn.
+    """
     draw_lines(axes, theme, run.t, values, joint_names(run.arm), f"{symbol} [{unit_of([run], per)}]")
     span = np.where(np.isfinite(upper - lower), upper - lower, 1.0)
     colours = [colour for (colour, _), _ in zip(theme.styles(), lower)]
     label = "bound"
     for bounds, gaps in ((lower, values - lower), (upper, upper - values)):
-        near = gaps.min(axis=0, initial=np.inf) < NEAR * span
+        near = np.isfinite(bounds) if every else gaps.min(axis=0, initial=np.inf) < NEAR * span
         for bound in np.unique(bounds[near]):
             owners = np.flatnonzero(near & (bounds == bound))
             colour = colours[owners[0]] if len(owners) == 1 else theme.ink
@@ -197,13 +200,13 @@ def scale_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
     if run.stack is not None and run.scales is not None:
         names = [", ".join(task.name for task in level) for level in run.stack.levels]
         draw_lines(axes, theme, run.t, run.scales, names, "task scale")
-        inner_legend(axes, theme)
     else:
         assert run.scale is not None
         axes.plot(run.t, run.scale, color=theme.lines[0], lw=LINE)
         axes.fill_between(run.t, run.scale, color=theme.lines[0], alpha=0.15, lw=0)
         over_time(axes, "task scale")
     axes.set(ylim=(0.0, 1.05), yticks=(0.0, 0.5, 1.0))
+    top_legend(axes, theme)
 
 
 def task_error_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
@@ -213,7 +216,7 @@ def task_error_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
         axes.plot(*envelope(run.t, norms), color=colour, ls=dash, lw=LINE, label=f"{name} [{unit}]")
     over_time(axes, r"$\|e\|$")
     in_decades(axes)
-    inner_legend(axes, theme)
+    top_legend(axes, theme)
 
 
 def saturation_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
@@ -287,7 +290,7 @@ class Panel(NamedTuple):
     """A panel: its heading, its function, whether it has a line for each joint, and whether a run has data for it."""
 
     heading: str
-    draw: Callable[[Any, Run, Theme], None]
+    draw: Callable[..., None]
     of_joints: bool = False
     fits: Callable[[Run], bool] = lambda run: True
 

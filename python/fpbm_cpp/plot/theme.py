@@ -1,6 +1,7 @@
 """The style of all figures: colours, dashes, and sizes for a column of a paper."""
 
 from collections.abc import Iterator, Sequence
+from io import BytesIO
 from itertools import cycle
 from typing import Any, NamedTuple
 
@@ -16,6 +17,7 @@ TEXT = 9.0  # [pt]
 COLUMN, PAGE = 3.5, 64 / 9  # Width of one column of a journal, and of nearly two columns [in].
 TITLE_ROW = 0.17  # Height of a line of the title [in].
 DPI = 270  # A page is 1920 pixels wide.
+SHOWN_DPI = 110  # Pixels per inch in a notebook.
 LINE = 1.4  # [pt]
 
 
@@ -51,10 +53,20 @@ DARK = Theme(
 )
 
 
+class Sheet(Figure):
+    """A figure that a notebook shows without %matplotlib; with %matplotlib inline, it is still shown once."""
+
+    def _repr_png_(self) -> tuple[bytes, dict[str, int]]:
+        png = BytesIO()
+        self.savefig(png, format="png", dpi=2 * SHOWN_DPI)
+        width, height = (round(SHOWN_DPI * float(side)) for side in self.get_size_inches())
+        return png.getvalue(), {"width": width, "height": height}
+
+
 def sheet(width: float, heights: Sequence[float], title: str, theme: Theme) -> tuple[Figure, list[Any]]:
     """An empty figure, and its parts from top to bottom, with these heights [in]."""
     head = TITLE_ROW * (title.count("\n") + 1) if title else 0.0
-    figure = Figure((width, head + sum(heights)), dpi=DPI, layout="constrained", facecolor=theme.paper)
+    figure = Sheet((width, head + sum(heights)), dpi=DPI, layout="constrained", facecolor=theme.paper)
     figure.suptitle(title, fontsize=TEXT + 1, color=theme.ink)
     return figure, list(figure.subfigures(len(heights), 1, squeeze=False, height_ratios=heights)[:, 0])
 

@@ -74,7 +74,7 @@ def _rows(loop: ServoLoop) -> list[tuple[str, ...]]:
     cells = [(_percent(a), _percent(b)) if there else ("no bound", "") for a, b, there in zip(now, far, known)]
     joints = [label for label, flag in zip(joint_labels(loop.arm), _on_bounds(loop)) if flag]
     return [
-        ("th", "worst joint, of its bound", "now", f"in {SECONDS:g} s"),
+        ("th", "largest fraction of a bound", "now", f"in {SECONDS:g} s"),
         *(("td", name, *cell) for name, cell in zip(names, cells)),
         ("td", "joints on a bound", ", ".join(joints) or "none", ""),
         *_distances(loop),
@@ -131,7 +131,7 @@ class StripChart:
             self._plot = gui.add_uplot(
                 self._data(loop.strip),
                 ({"label": "t [s]"}, *({**curve, "points": {"show": False}} for curve in (*curves, *scales))),
-                title="worst joint, of its bound [%]",
+                title="largest fraction of a bound [%]",
                 scales={"x": {"time": False}, "y": {"range": (0.0, 105.0)}},
                 axes=({"size": 36}, {"size": 44}),
                 legend={"live": False},
