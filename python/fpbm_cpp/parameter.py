@@ -192,7 +192,7 @@ class Data:
         return partial(type(self), **self._given()), ()
 
 
-def library_class(cls: type) -> type:
+def library_class(cls: type) -> Any:
     """The class that determines the meaning of objects of a class: the class itself, or its nearest parent, in the
     library."""
     return next((each for each in cls.__mro__ if each in LIBRARY), cls)
