@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <type_traits>
 #include <utility>
 
@@ -159,7 +160,7 @@ class Limiter {
     auto saturation = saturation_of(tasks, unit_, rows);
     Result<Tasks> found = with_scale(tasks, desired, Scalar(1));
     if (!lower.contains(desired)) {
-      const JointVector rest = rows.near(brake_in_proportion(limits_, state, whole), whole);
+      const JointVector rest = rows.near(braking(state, whole), whole);
       const JointVector first = braking_in_null_space(tasks, desired, rest);
       found = saturation(whole, rest, first);
       if (found.scale < Scalar(1)) {
@@ -178,13 +179,26 @@ class Limiter {
                        approach(limits_, state.qd, found.u), found);
   }
 
+  /// Braking motion for saturation: in the box also for joints beyond their ranges, so that other joints compensate for
+  /// their return.
+  [[nodiscard]] JointVector braking(const JointState& state, const Box<N, Scalar>& box) const noexcept {
+    JointVector rest = brake_in_proportion(limits_, state, box);
+    const auto& bounds = limits_.bounds();
+    for (Eigen::Index i = 0; i < rest.size(); ++i) {
+      if (state.q.coeff(i) < bounds.lower.coeff(i) || state.q.coeff(i) > bounds.upper.coeff(i)) {
+        rest.coeffRef(i) = std::clamp(rest.coeff(i), box.lower.coeff(i), box.upper.coeff(i));
+      }
+    }
+    return rest;
+  }
+
   /// Motion within the bounds that realises as much as possible of the desired motion.
   template <typename Saturation, typename Tasks, int P>
   [[nodiscard]] Result<Tasks> within(Saturation& saturation, const Tasks& tasks, const JointState& state,
                                      const Box<N, Scalar>& box, const Rows<N, P, Scalar>& rows,
                                      const JointVector& desired) const noexcept {
     if (box.contains(desired)) return with_scale(tasks, desired, Scalar(1));
-    const JointVector rest = rows.near(brake_in_proportion(limits_, state, box), box);
+    const JointVector rest = rows.near(braking(state, box), box);
     Result<Tasks> found = saturation(box, rest, desired);
     if (found.scale < Scalar(1)) {
       blend_with_least_squares<kLevel>(first_level(tasks), state.qd, box, rows, desired, found);
