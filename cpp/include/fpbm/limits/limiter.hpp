@@ -41,11 +41,13 @@ class Limiter {
 
   /// reserve: fraction of each joint's bound on acceleration that the levels below the first level leave to the first
   /// level. The lower levels leave reserve/2 of the bound on velocity. 0: the first level has no reserve, and all
-  /// levels share the limits. Throws std::invalid_argument if reserve is not in [0, 1].
-  explicit Limiter(const Limits<kLevel, N, Scalar>& limits, Scalar reserve = Scalar(0))
+  /// levels share the limits. compensates: whether other joints compensate for a joint that returns from beyond its
+  /// range. Throws std::invalid_argument if reserve is not in [0, 1].
+  explicit Limiter(const Limits<kLevel, N, Scalar>& limits, Scalar reserve = Scalar(0), bool compensates = false)
       : limits_(limits),
         lower_limits_(reserved_limits(limits, reserve)),
         reserves_(reserve > Scalar(0)),
+        compensates_(compensates),
         unit_(limits.bounds().acceleration) {
     for (Eigen::Index i = 0; i < unit_.size(); ++i) {
       if (!std::isfinite(unit_(i))) unit_(i) = Scalar(1);
@@ -179,12 +181,12 @@ class Limiter {
                        approach(limits_, state.qd, found.u), found);
   }
 
-  /// Braking motion for saturation: in the box also for joints beyond their ranges, so that other joints compensate for
-  /// their return.
+  /// Braking motion for saturation. With compensates_, in the box also for joints beyond their ranges, so that other
+  /// joints compensate for their return.
   [[nodiscard]] JointVector braking(const JointState& state, const Box<N, Scalar>& box) const noexcept {
     JointVector rest = brake_in_proportion(limits_, state, box);
     const auto& bounds = limits_.bounds();
-    for (Eigen::Index i = 0; i < rest.size(); ++i) {
+    for (Eigen::Index i = 0; compensates_ && i < rest.size(); ++i) {
       if (state.q.coeff(i) < bounds.lower.coeff(i) || state.q.coeff(i) > bounds.upper.coeff(i)) {
         rest.coeffRef(i) = std::clamp(rest.coeff(i), box.lower.coeff(i), box.upper.coeff(i));
       }
@@ -220,6 +222,7 @@ class Limiter {
   Limits<kLevel, N, Scalar> limits_;
   Limits<kLevel, N, Scalar> lower_limits_;  ///< Limits of the levels below the first level.
   bool reserves_;
+  bool compensates_;
   JointVector unit_;  ///< Unit of each joint's null-space motion.
 };
 
