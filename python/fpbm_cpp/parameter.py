@@ -192,20 +192,22 @@ class Data:
         return partial(type(self), **self._given()), ()
 
 
-def library_class(cls: type) -> type:
+def library_class(cls: type) -> Any:
     """The class that determines the meaning of objects of a class: the class itself, or its nearest parent, in the
     library."""
     return next((each for each in cls.__mro__ if each in LIBRARY), cls)
 
 
-@cache
-def _kept(cls: type) -> dict[str, Any]:
+def _kept_of(cls: type) -> dict[str, Any]:
     """Class variables of the library that a subclass outside the library hides, with the values of the library."""
     meaning = library_class(cls)
     hidden = {name for each in cls.__mro__[: cls.__mro__.index(meaning)] for name in vars(each)}
     static = {name: inspect.getattr_static(meaning, name, None) for name in hidden if not name.startswith("__")}
     known = parameters(meaning)
     return {n: v for n, v in static.items() if hasattr(meaning, n) and n not in known and not hasattr(v, "__get__")}
+
+
+_kept: Callable[[type], dict[str, Any]] = cache(_kept_of)
 
 
 def _restored(cls: type[Data], values: dict[str, Any]) -> Data:

@@ -15,7 +15,7 @@ from ._core import TIME_LAWS, circle, in_plane, line, lissajous, sequence, tricu
 from ._core import Path as CorePath
 from ._types import ArrayField, DerivedField, OptionalArrayField
 from .errors import require
-from .parameter import POSITIVE, Data, Parameter, data, parameter, parameters
+from .parameter import POSITIVE, Data, Parameter, data, library_class, parameter, parameters
 
 __all__ = ["Circle", "InPlane", "Line", "Lissajous", "Path", "Sequence", "Tricuspid", "Waypoints", "WithRotation"]
 
@@ -63,7 +63,7 @@ class Path(Data, CorePath):
         return Sequence((self, path))
 
     def _finish(self) -> None:
-        CorePath.__init__(self, COMPILERS[self.kind](*self._values().values()))
+        CorePath.__init__(self, COMPILERS[library_class(type(self)).kind](*self._values().values()))
 
 
 @data

@@ -58,10 +58,11 @@ class Scheme(Data, CoreScheme):
     )
 
     def _finish(self) -> None:
-        if library_class(type(self)) not in SCHEMES.values():
+        meaning = library_class(type(self))
+        if meaning not in SCHEMES.values():
             names = ", ".join(each.__name__ for each in SCHEMES.values())
             raise TypeError(f"{type(self).__name__}: is not a scheme: must be derived from one of {names}")
-        CoreScheme.__init__(self, self.level, {**self.fixed, **self._values()})
+        CoreScheme.__init__(self, meaning.level, {**meaning.fixed, **self._values()})
 
 
 class VelocityScheme(Scheme):

@@ -45,12 +45,13 @@ class Task(Data, CoreTask):
     k: float = parameter("Feedback gain at velocity level.", NOT_NEGATIVE, default=5.0, unit="1/s")
 
     def _finish(self) -> None:
-        if library_class(type(self)) not in TASKS.values():
+        meaning = library_class(type(self))
+        if meaning not in TASKS.values():
             names = ", ".join(each.__name__ for each in TASKS.values())
             raise TypeError(f"{type(self).__name__}: is not a task: must be derived from one of {names}")
-        CoreTask.__init__(self, self.kind)
+        CoreTask.__init__(self, meaning.kind)
         if not self.name:
-            object.__setattr__(self, "name", self.kind)
+            object.__setattr__(self, "name", meaning.kind)
 
 
 @data

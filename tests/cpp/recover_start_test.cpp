@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <limits>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "support/arms.hpp"
@@ -156,6 +158,39 @@ TEST(RecoverStart, brings_joints_back_at_acceleration_level) {
 }
 TEST(RecoverStart, brings_joints_back_at_velocity_level) {
   joints_return<Level::kVelocity>();
+}
+
+/// Largest error of a tip that is held while a joint of the Panda returns.
+template <Level kLevel>
+[[nodiscard]] double held_error(Eigen::Index joint, double sign, double jerk, double tick) {
+  const auto arm = any_arm(bounded(presets::panda(), jerk));
+  State<N> start{Vector<7>{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785}, Vector<N>::Zero(7)};
+  start.q(joint) = sign > 0.0 ? arm.limits().upper(joint) + 0.1 : arm.limits().lower(joint) - 0.1;
+  TrackerOptions<> options;
+  options.dt = tick;
+  options.recover_start = true;
+  CompiledTracker tracker(arm, Position<3>{}, scheme_of<kLevel>(7), start, options);
+  const auto hold = Reference<Position<3>>::hold(tracker.tip());
+  double error = 0.0;
+  for (int k = 0; k < 1.5 / tick; ++k) {
+    const auto result = tracker.tick(hold);
+    EXPECT_EQ(result.scale, 1.0);
+    error = std::max(error, result.error.norm());
+  }
+  return error;
+}
+
+/// The other joints compensate for the return: joints 3, 5 and 6 of the Panda have enough null-space motion.
+TEST(RecoverStart, does_not_move_a_tip_that_other_joints_can_hold) {
+  for (const double jerk : {JointBounds<>::kNone, 500.0}) {
+    for (const double tick : {1e-3, 2e-2}) {
+      SCOPED_TRACE("jerk " + std::to_string(jerk) + ", tick " + std::to_string(tick));
+      for (const auto& [joint, sign] : {std::pair{2, 1.0}, {4, 1.0}, {4, -1.0}, {5, 1.0}, {5, -1.0}}) {
+        EXPECT_LE(held_error<Level::kAcceleration>(joint, sign, jerk, tick), 0.1 * tick) << "joint " << joint;
+        EXPECT_LE(held_error<Level::kVelocity>(joint, sign, jerk, tick), 0.1 * tick) << "joint " << joint;
+      }
+    }
+  }
 }
 
 /// A start within the limits moves as without the option.

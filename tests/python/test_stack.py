@@ -482,7 +482,7 @@ def test_one_path_of_several_tasks_names_its_task(panda, balanced):
     one = fp.sweep(panda, {"hand": line}, balanced, READY, stack=stack, limits=panda.limits, motions=True)
     assert np.array_equal(one.motions[0, 0].q, run.q)
     assert one.motions[0, 0].task == "hand"
-    with pytest.raises(fp.ParameterError, match="path = .*: has paths of 2 tasks|path has paths of 2 tasks"):
+    with pytest.raises(fp.ParameterError, match="path has paths of 2 tasks"):
         fp.sweep(panda, {"hand": line, "elbow": line}, balanced, READY, stack=stack)
 
 

@@ -178,6 +178,14 @@ class Round(fp.Circle):
         super().__init__(width / 2, 3.0)
 
 
+def test_a_property_does_not_change_the_kind(panda: fp.SerialArm) -> None:
+    kind = property(lambda _: "pose")
+    mine = type("Mine", (fp.PositionTask,), {"kind": kind})()
+    assert fp.Tracker(panda, scheme(), READY, stack=fp.Stack(mine)).tip["position"].shape == (3,)
+    other = type("Mine", (fp.Balanced,), {"level": property(lambda _: "velocity")})(0.6, np.ones(7), null_damping=2)
+    assert np.array_equal(ticks(panda, other), ticks(panda, scheme()))
+
+
 @pytest.mark.parametrize("base", [fp.Task, fp.Scheme, fp.tasks.RowsTask, fp.tasks.FrameTask])
 def test_a_class_of_its_own_is_refused(base: type) -> None:
     with pytest.raises(TypeError, match=r"Mine: is not a (task|scheme): must be derived from one of "):

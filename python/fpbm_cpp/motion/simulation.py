@@ -200,7 +200,7 @@ def one_path(path: Paths, task: str | None, stack: Stack | None) -> tuple[Path, 
     name, _, followed, others = task_and_paths(path, task, stack)
     if others:
         raise wrong(
-            "path", path, f" has paths of {len(path)} tasks: must be one path; simulate() and track() accept more"
+            "path", path, f" has paths of {1 + len(others)} tasks: must be one path; simulate() and track() accept more"
         )
     return followed, name if isinstance(path, Mapping) else task
 

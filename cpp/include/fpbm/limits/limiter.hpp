@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <type_traits>
 #include <utility>
 
@@ -40,11 +41,13 @@ class Limiter {
 
   /// reserve: fraction of each joint's bound on acceleration that the levels below the first level leave to the first
   /// level. The lower levels leave reserve/2 of the bound on velocity. 0: the first level has no reserve, and all
-  /// levels share the limits. Throws std::invalid_argument if reserve is not in [0, 1].
-  explicit Limiter(const Limits<kLevel, N, Scalar>& limits, Scalar reserve = Scalar(0))
+  /// levels share the limits. compensates: whether other joints compensate for a joint that returns from beyond its
+  /// range. Throws std::invalid_argument if reserve is not in [0, 1].
+  explicit Limiter(const Limits<kLevel, N, Scalar>& limits, Scalar reserve = Scalar(0), bool compensates = false)
       : limits_(limits),
         lower_limits_(reserved_limits(limits, reserve)),
         reserves_(reserve > Scalar(0)),
+        compensates_(compensates),
         unit_(limits.bounds().acceleration) {
     for (Eigen::Index i = 0; i < unit_.size(); ++i) {
       if (!std::isfinite(unit_(i))) unit_(i) = Scalar(1);
@@ -159,7 +162,7 @@ class Limiter {
     auto saturation = saturation_of(tasks, unit_, rows);
     Result<Tasks> found = with_scale(tasks, desired, Scalar(1));
     if (!lower.contains(desired)) {
-      const JointVector rest = rows.near(brake_in_proportion(limits_, state, whole), whole);
+      const JointVector rest = rows.near(braking(state, whole), whole);
       const JointVector first = braking_in_null_space(tasks, desired, rest);
       found = saturation(whole, rest, first);
       if (found.scale < Scalar(1)) {
@@ -178,13 +181,26 @@ class Limiter {
                        approach(limits_, state.qd, found.u), found);
   }
 
+  /// Braking motion for saturation. With compensates_, in the box also for joints beyond their ranges, so that other
+  /// joints compensate for their return.
+  [[nodiscard]] JointVector braking(const JointState& state, const Box<N, Scalar>& box) const noexcept {
+    JointVector rest = brake_in_proportion(limits_, state, box);
+    const auto& bounds = limits_.bounds();
+    for (Eigen::Index i = 0; compensates_ && i < rest.size(); ++i) {
+      if (state.q.coeff(i) < bounds.lower.coeff(i) || state.q.coeff(i) > bounds.upper.coeff(i)) {
+        rest.coeffRef(i) = std::clamp(rest.coeff(i), box.lower.coeff(i), box.upper.coeff(i));
+      }
+    }
+    return rest;
+  }
+
   /// Motion within the bounds that realises as much as possible of the desired motion.
   template <typename Saturation, typename Tasks, int P>
   [[nodiscard]] Result<Tasks> within(Saturation& saturation, const Tasks& tasks, const JointState& state,
                                      const Box<N, Scalar>& box, const Rows<N, P, Scalar>& rows,
                                      const JointVector& desired) const noexcept {
     if (box.contains(desired)) return with_scale(tasks, desired, Scalar(1));
-    const JointVector rest = rows.near(brake_in_proportion(limits_, state, box), box);
+    const JointVector rest = rows.near(braking(state, box), box);
     Result<Tasks> found = saturation(box, rest, desired);
     if (found.scale < Scalar(1)) {
       blend_with_least_squares<kLevel>(first_level(tasks), state.qd, box, rows, desired, found);
@@ -206,6 +222,7 @@ class Limiter {
   Limits<kLevel, N, Scalar> limits_;
   Limits<kLevel, N, Scalar> lower_limits_;  ///< Limits of the levels below the first level.
   bool reserves_;
+  bool compensates_;
   JointVector unit_;  ///< Unit of each joint's null-space motion.
 };
 

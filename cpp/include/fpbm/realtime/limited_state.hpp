@@ -38,7 +38,7 @@ class LimitedState {
                const JointVector& qdd0, const Guard_& guard, JointBits continuous)
       : tick_{{options.dt}, start, qdd0, filled<JointVector>(qdd0.size())},
         correction_(options),
-        limiter_(limits, kHasLevels && options.keep_first_level ? kReserve : Scalar(0)),
+        limiter_(limits, kHasLevels && options.keep_first_level ? kReserve : Scalar(0), options.recover_start),
         guard_(guard),
         keeps_first_level_(kHasLevels && options.keep_first_level),
         progress_(options, start.q, continuous),
