@@ -601,7 +601,7 @@ void expect_to_return(double h) {
     y += h * speed;
     ASSERT_TRUE(tracker.guard().clearance().move(0, post_at(y), Vector<3>(0.0, speed, 0.0)));
     const auto tick = tracker.tick(home);
-    if (h < 0.02 && ((t >= 8.5 && t < 10.0) || (t >= 14.5 && t < 15.0))) {
+    if (h < 0.02 && ((t >= 9.5 && t < 10.0) || (t >= 14.5 && t < 15.0))) {
       ASSERT_EQ(tick.status, Status::kStalled) << t;
       ASSERT_EQ(tick.qd.norm(), 0.0) << t;
       ASSERT_GE(tick.error.norm(), 0.05) << t;

@@ -20,8 +20,9 @@ struct StopDisplacement {
   Vector<N, Scalar> ramp_correction;  ///< Correction of `line` for the last tick and the ramp.
   Vector<N, Scalar> low;              ///< ≤ 0
   Vector<N, Scalar> high;             ///< ≥ 0
-  /// Velocities at the start [rad/s]. s·line + t·ramp_correction is a combination of `start_velocity` and
-  /// −ramp_correction with non-negative coefficients.
+  /// Velocities in which the motion begins [rad/s]: before the last tick, or in the last tick at velocity level, where
+  /// the velocities of a tick are constant. s·line + t·ramp_correction is a combination of `start_velocity` and
+  /// −ramp_correction with non-negative coefficients (docs/clearance.md, "First-order terms").
   Vector<N, Scalar> start_velocity;
 
   /// Displacement of n joints at rest.

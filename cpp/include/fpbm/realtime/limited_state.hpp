@@ -161,8 +161,9 @@ class LimitedState {
   static constexpr Scalar kReserve = Scalar(0.7);
 
   /// Replaces the end of an RK4 step by the end of a tick whose positions also keep the bounds. Acceleration level:
-  /// with bounds on jerk, or if differences of positions would violate bounds, the tick has the mean acceleration of
-  /// the step (docs/limits.md, Bounds on jerk). Velocity level: the tick has the mean velocity of the step.
+  /// with bounds on jerk or a clearance, or if differences of positions would violate bounds, the tick has the mean
+  /// acceleration of the step (docs/limits.md, Bounds on jerk). Velocity level: the tick has the mean velocity of the
+  /// step.
   void make_admissible(JointState& next) const noexcept {
     if constexpr (kSecondOrder) {
       if (!guard_.empty() || limits().bounds_jerk() || !limits().admits_differences(tick_.joints, next)) {
