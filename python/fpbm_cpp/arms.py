@@ -84,9 +84,9 @@ class JointLimits(Data):
 
         Raises ParameterError if the length of an array is not arm.dof.
         """
-        for name, values in self.given.items():
+        for values in self.given.values():
             if isinstance(values, np.ndarray):
-                require_length(name, values, arm.dof)
+                require_length("limits", values, arm.dof)
         own = {name: np.asarray(values) for name, values in arm.bounds().items()}
         return JointLimits(**{**own, **self.given})
 

@@ -112,12 +112,14 @@ void expect_to_stop(const presets::Preset& preset, int kind, int delay, int age,
   LateArm<kOpen> late(start, delay);
   Reference<Space> target = Reference<Space>::hold(tracker.tip());
   double fastest = 0.0;
+  double rate = 0.0;
   const auto tick = [&] {
     const auto seen = sensor(late.late(age), random);
     const auto answer = tracker.resolve_measured(seen.q, seen.qd, target);
     late.advance(answer.qdd);
     expect_within(bounds, late.state(), sensor);
     fastest = std::max(fastest, late.state().qd.cwiseQuotient(bounds.velocity).cwiseAbs().maxCoeff());
+    rate = std::max(rate, late.state().qd.cwiseAbs().maxCoeff());
     return answer.qdd.cwiseQuotient(bounds.acceleration).cwiseAbs().maxCoeff();
   };
   for (int i = 0; i < 1200; ++i) {
@@ -128,7 +130,7 @@ void expect_to_stop(const presets::Preset& preset, int kind, int delay, int age,
     tick();
     if (::testing::Test::HasFatalFailure()) FAIL() << "tick " << i;
   }
-  EXPECT_GT(fastest, 0.2);
+  EXPECT_TRUE(fastest > 0.2 || rate > 0.5) << fastest << ", " << rate;  // SO-101: bounds of 4.71 rad/s.
   tracker.stop();
   double busy = 0.0;
   for (int i = 0; i < 1300; ++i) {

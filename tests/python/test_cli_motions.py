@@ -310,7 +310,10 @@ def test_limits() -> None:
 def test_limits_of_an_arm_without_acceleration_bounds() -> None:
     shutil.copy(ROOT / "examples/04_exported_arm.urdf", "arm.urdf")
     arm = ["arm.urdf", "--tip", "tool", "--duration", "2"]
-    shown_text = "is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is usual"
+    shown_text = (
+        "is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is usual, for example "
+        "--limit-acceleration 10, or acceleration = 10 under [limits] in a job"
+    )
     for name in MOTIONS:
         assert error_of(name, *arm, "--limits") == f"--limit-acceleration: {shown_text}"
     Path("job.toml").write_text("[arm]\nkind = 'urdf'\nfile = 'arm.urdf'\ntip = 'tool'\n[limits]\n")
@@ -805,7 +808,10 @@ def test_servo_has_no_path_options_and_always_limits() -> None:
 
 def test_servo_reports_invalid_options() -> None:
     shutil.copy(ROOT / "examples/04_exported_arm.urdf", "arm.urdf")
-    shown_text = "--limit-acceleration: is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is usual"
+    shown_text = (
+        "--limit-acceleration: is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is usual, for example "
+        "--limit-acceleration 10, or acceleration = 10 under [limits] in a job"
+    )
     assert error_of("servo", "arm.urdf", "--tip", "tool") == shown_text
     assert error_of("servo", "planar:1,1,1", "--limit-velocity", "1") == shown_text
     assert error_of("servo", "panda", "--task", "dance").startswith("--task = 'dance': must be one of")

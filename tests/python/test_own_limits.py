@@ -72,7 +72,7 @@ def test_partial_limits_are_data(limits: JointLimits) -> None:
 def test_wrong_lengths_are_named() -> None:
     with pytest.raises(fp.ParameterError, match=r"^velocity has 3 entries: must have 2, one per joint$"):
         fp.JointLimits(lower=[0, 0], velocity=[1, 2, 3])
-    with pytest.raises(fp.ParameterError, match=r"^velocity has 3 entries: must have 7, one per joint$"):
+    with pytest.raises(fp.ParameterError, match=r"^limits has 3 entries: must have 7, one per joint$"):
         fp.Tracker(PANDA, fp.MVN(), Q0, limits=fp.JointLimits(velocity=[1, 2, 3]))
     with pytest.raises(fp.ParameterError, match="must be real numbers"):
         fp.JointLimits(velocity=[[1]])
