@@ -213,7 +213,7 @@ def test_the_default_circle_shrinks_until_the_tip_can_follow() -> None:
     ("arguments", "remedy"),
     [
         (("planar:0.1,0.1,0.1", "--radius", "0.1"), "Make the path smaller, or choose another start posture"),
-        (("panda", "--radius", "0.1", "--duration", "0.5"), "Increase the duration of the path"),
+        (("panda", "--radius", "0.1", "--duration", "0.5"), "Increase the duration to slow the path"),
         (("panda", "--scheme", "mvn", "--dt", "0.05", "--duration", "1", "--no-limits"), "larger gains"),
     ],
 )

@@ -16,7 +16,7 @@ from tomlkit.exceptions import TOMLKitError
 
 from .._core import check_sweep
 from .._types import Array
-from ..arms import Arm, JointLimits, PlanarArm
+from ..arms import Arm, JointLimits, PlanarArm, SerialArm
 from ..clearance import Clearance
 from ..errors import not_one_of, wrong
 from ..io import write_whole
@@ -257,7 +257,7 @@ def _filled_path(said: Table, arm: Arm | Robot) -> Table:
 
 
 def _scaled(said: Any, full: Any, arm: Arm | Robot, run: Table | None) -> Any:
-    """The paths with the default radius of circles: CIRCLE times the reach, halved until the tip can follow the path.
+    """The paths with the default radius of circles: CIRCLE times the arm's length, halved until the tip can follow the path.
 
     run: the options of the run; None for a stack, whose paths are not tried.
     """
@@ -286,11 +286,13 @@ def _reach(arm: Arm | Robot) -> float:
     """Bound on the distance of a tip from the base [m], with prismatic joints at zero."""
     if isinstance(arm, PlanarArm):
         return float(np.sum(arm.lengths))
+    if isinstance(arm, SerialArm):
+        return float(sum(np.linalg.norm(place[:3, 3]) for place in (*(each.placement for each in arm.joints), arm.tip)))
+    assert isinstance(arm, Robot)
     far = [0.0]
-    for i, each in enumerate(arm.joints):
-        joint, parent = (each.joint, each.parent) if isinstance(arm, Robot) else (each, i)
-        far.append(far[parent] + float(np.linalg.norm(joint.placement[:3, 3])))
-    return max(far) if isinstance(arm, Robot) else far[-1] + float(np.linalg.norm(arm.tip[:3, 3]))
+    for each in arm.joints:
+        far.append(far[each.parent] + float(np.linalg.norm(each.joint.placement[:3, 3])))
+    return max(far)
 
 
 def _can_follow(arm: Arm | Robot, path: Path, run: Table) -> bool:
