@@ -257,20 +257,21 @@ def _filled_path(said: Table, arm: Arm | Robot) -> Table:
 
 
 def _scaled(said: Any, full: Any, arm: Arm | Robot, run: Table | None) -> Any:
-    """The paths with the default radius of circles: CIRCLE times the arm's length, halved until the tip can follow the path.
+    """The paths with the default radius of circles: CIRCLE times the arm's length.
 
-    run: the options of the run; None for a stack, whose paths are not tried.
+    The radius is halved until the tip can follow the path, unless HALVINGS do not suffice. run: the options of the run;
+    None for a stack, whose paths are not tried.
     """
     radius = float(f"{CIRCLE * _reach(arm):.1g}")
-    paths = _with_radius(said, full, radius)
-    if radius == 0.0 or paths == _with_radius(said, full, 2 * radius):
+    first = _with_radius(said, full, radius)
+    if radius == 0.0 or first == _with_radius(said, full, 2 * radius):
         return full
-    for _ in range(HALVINGS):
-        if run is None or _can_follow(arm, make("path", paths, arm), run):
-            break
-        radius /= 2
-        paths = _with_radius(said, full, radius)
-    return paths
+    if run is not None:
+        for halvings in range(HALVINGS + 1):
+            paths = _with_radius(said, full, radius / 2**halvings)
+            if _can_follow(arm, make("path", paths, arm), run):
+                return paths
+    return first
 
 
 def _with_radius(said: Any, full: Any, radius: float) -> Any:
