@@ -131,7 +131,7 @@ def test_examples_of_the_help_run(name: str) -> None:
 
 
 def test_summary_agrees_with_the_run() -> None:
-    result = call("track", "panda", "--duration", "2", "--task", "pose", "--hold", "1", "--k1", "7")
+    result = call(*"track panda --radius 0.1 --duration 2 --task pose --hold 1 --k1 7 --no-limits".split())
     assert result.exit_code == 0
     run = fp.simulate(
         fp.SerialArm.preset("panda"),
@@ -298,8 +298,9 @@ def test_also_writes_further_formats(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_limits() -> None:
     bounds = ["--limit-velocity", "0.05", "--limit-acceleration", "5"]
     for arguments in (["--limits", *bounds], bounds):
-        result = call("track", "planar:1,1,1,1", "--duration", "2", *arguments)
-        assert result.exit_code == 0
+        result = call("track", "planar:1,1,1,1", "--radius", "0.1", "--duration", "2", *arguments)
+        assert result.exit_code == 1
+        assert "m from its path: at times, joint limits" in " ".join(result.stdout.split())
         assert "joints on a bound" in result.stdout
         assert re.search(r"peak joint velocity +0\.05 ", result.stdout)
     Path("job.toml").write_text(
@@ -307,9 +308,9 @@ def test_limits() -> None:
     )
     assert "joints on a bound" in call("track", "--job", "job.toml").stdout
     assert "joints on a bound" not in call("track", "--job", "job.toml", "--no-limits").stdout
-    fast = call("track", "panda", "--duration", "0.4", "--dt", "0.01").stdout
+    fast = call(*"track panda --radius 0.1 --duration 0.4 --dt 0.01 --no-limits".split()).stdout
     assert re.search(r"joints beyond a bound +\d +panda_joint.*: --limits keeps the bounds", fast)
-    assert "beyond" not in call("track", "panda", "--duration", "5").stdout
+    assert "beyond" not in call("track", "panda", "--duration", "5", "--no-limits").stdout
     line = error_of("track", "planar:1,1,1", "--limit-velocity", "1")
     assert line.startswith("--limit-acceleration: is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is")
 
@@ -347,7 +348,7 @@ def test_sweep_and_tune_keep_limits(folder: Path) -> None:
 def test_options_are_equivalent_to_a_file() -> None:
     arguments = ["planar:1,0.5,0.5", "--path", "lissajous", "--amplitude", "0.05,0.1", "--frequencies", "1,2"]
     arguments += ["--scheme", "balanced", "--alpha", "0.25", "--weights", "2,1,0; 1,2,0; 0,0,1", "--q0", "-0.1,0.5,1e0"]
-    result = call("track", *arguments, *QUICK, "--dt", "0.01", "--save-job", "job.toml")
+    result = call("track", *arguments, *QUICK, "--dt", "0.002", "--save-job", "job.toml")
     assert result.exit_code == 0, result.output
     job = read_job("job.toml")
     assert job["arm"]["lengths"] == [1.0, 0.5, 0.5]
@@ -397,7 +398,7 @@ def test_a_joint_beyond_a_bound_is_reported(name: str) -> None:
 
 
 def test_a_motion_without_samples_has_no_animation() -> None:
-    result = call("track", "planar:1,1", "--q0", "0,0", "--out", "out", "--also", "gif")
+    result = call("track", "planar:1,1", "--q0", "0,0", "--no-limits", "--out", "out", "--also", "gif")
     assert result.exit_code == 1
     assert result.stderr == (
         "Error: cannot write run.gif: run: has no samples: must have at least one: run.status has the cause\n"
@@ -522,7 +523,7 @@ def test_missing_extra(module: str, arguments: list[str]) -> None:
 
 
 def test_compare() -> None:
-    result = call("compare", "planar:1,1,1,1", "--weights", "1,2,3,4", "--alpha", "0.3", "--k", "5", *QUICK)
+    result = call(*"compare planar:1,1,1,1 --radius 0.1 --weights 1,2,3,4 --alpha 0.3 --k 5".split(), *QUICK)
     assert result.exit_code == 0, result.output
     rows = [line.split() for line in result.stdout.split("\n\n")[1].splitlines()[2:]]
     assert [row[0] for row in rows] == ["mvn", "wmvn", "man", "wmvn_acceleration", "balanced", "fpbm"]
@@ -567,7 +568,19 @@ def test_compare_rejects_invalid_options() -> None:
 
 
 def test_sweep() -> None:
-    arguments = ["sweep", "panda", *QUICK, "--vary", "alpha=0:1:3", "--vary", "null-damping=0,2", "--starts", "5"]
+    arguments = [
+        "sweep",
+        "panda",
+        "--radius",
+        "0.1",
+        *QUICK,
+        "--vary",
+        "alpha=0:1:3",
+        "--vary",
+        "null-damping=0,2",
+        "--starts",
+        "5",
+    ]
     result = call(*arguments, "--out", "out")
     assert result.exit_code == 0, result.output
     rows = list(csv.DictReader(Path("out/sweep.csv").read_text().splitlines()))
