@@ -121,7 +121,7 @@ def test_examples_of_the_help_run(name: str) -> None:
         call("track", "iiwa14", *QUICK, "--save-job", "job.toml")
     for line in examples(name):
         words = shlex.split(line)
-        result = call(*words[1:], *([] if "--duration" in words else ["--duration", "0.5"]))
+        result = call(*words[1:], *([] if "--duration" in words else ["--duration", "2"]))
         assert result.exit_code == 0, (line, result.output)
         if "--out" in words:
             assert list(Path(words[words.index("--out") + 1]).iterdir())
@@ -131,7 +131,8 @@ def test_examples_of_the_help_run(name: str) -> None:
 
 
 def test_summary_agrees_with_the_run() -> None:
-    result = call(*"track panda --radius 0.1 --duration 2 --task pose --hold 1 --k1 7 --no-limits".split())
+    arguments = ["--radius", "0.1", "--duration", "2", "--task", "pose", "--hold", "1", "--k1", "7", "--no-limits"]
+    result = call("track", "panda", *arguments)
     assert result.exit_code == 0
     run = fp.simulate(
         fp.SerialArm.preset("panda"),
@@ -308,7 +309,7 @@ def test_limits() -> None:
     )
     assert "joints on a bound" in call("track", "--job", "job.toml").stdout
     assert "joints on a bound" not in call("track", "--job", "job.toml", "--no-limits").stdout
-    fast = call(*"track panda --radius 0.1 --duration 0.4 --dt 0.01 --no-limits".split()).stdout
+    fast = call(*["track", "panda", "--radius", "0.1", "--duration", "0.4", "--dt", "0.01", "--no-limits"]).stdout
     assert re.search(r"joints beyond a bound +\d +panda_joint.*: --limits keeps the bounds", fast)
     assert "beyond" not in call("track", "panda", "--duration", "5", "--no-limits").stdout
     line = error_of("track", "planar:1,1,1", "--limit-velocity", "1")
@@ -523,7 +524,8 @@ def test_missing_extra(module: str, arguments: list[str]) -> None:
 
 
 def test_compare() -> None:
-    result = call(*"compare planar:1,1,1,1 --radius 0.1 --weights 1,2,3,4 --alpha 0.3 --k 5".split(), *QUICK)
+    arguments = ["--radius", "0.1", "--weights", "1,2,3,4", "--alpha", "0.3", "--k", "5", *QUICK]
+    result = call("compare", "planar:1,1,1,1", *arguments)
     assert result.exit_code == 0, result.output
     rows = [line.split() for line in result.stdout.split("\n\n")[1].splitlines()[2:]]
     assert [row[0] for row in rows] == ["mvn", "wmvn", "man", "wmvn_acceleration", "balanced", "fpbm"]
