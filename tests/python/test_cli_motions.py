@@ -121,7 +121,7 @@ def test_examples_of_the_help_run(name: str) -> None:
         call("track", "iiwa14", *QUICK, "--save-job", "job.toml")
     for line in examples(name):
         words = shlex.split(line)
-        result = call(*words[1:], *([] if "--duration" in words else ["--duration", "2"]))
+        result = call(*words[1:], *([] if "--duration" in words else ["--duration", "5"]))
         assert result.exit_code == 0, (line, result.output)
         if "--out" in words:
             assert list(Path(words[words.index("--out") + 1]).iterdir())
