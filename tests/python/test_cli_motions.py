@@ -219,8 +219,7 @@ def test_the_default_circle_shrinks_until_the_tip_can_follow() -> None:
 )
 def test_a_tip_that_left_its_path_is_not_complete(arguments: tuple[str, ...], remedy: str) -> None:
     result = call("track", *arguments, "--out", "out")
-    assert result.exit_code == 1
-    assert result.stderr == "Error: the motion is not complete: the status above has the cause and a remedy\n"
+    assert result.exit_code == 0
     run = fp.load("out/run.npz")
     assert run.max_error() > 1e-3
     text = " ".join(result.stdout.split())
@@ -300,7 +299,7 @@ def test_limits() -> None:
     bounds = ["--limit-velocity", "0.05", "--limit-acceleration", "5"]
     for arguments in (["--limits", *bounds], bounds):
         result = call("track", "planar:1,1,1,1", "--radius", "0.1", "--duration", "2", *arguments)
-        assert result.exit_code == 1
+        assert result.exit_code == 0
         assert "m from its path: at times, joint limits" in " ".join(result.stdout.split())
         assert "joints on a bound" in result.stdout
         assert re.search(r"peak joint velocity +0\.05 ", result.stdout)

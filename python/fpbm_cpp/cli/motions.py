@@ -45,8 +45,7 @@ def track(request: Request, out: Path | None, dark: bool, also: tuple[str, ...])
     fpbm_cpp.simulate. With --job, it keeps limits if the job has limits, or with --limits.
 
     With --out, the folder gets run.png, run.npz, which fpbm_cpp.load reads, and job.toml, which contains all options.
-    If the motion stops early or the tip leaves its path by more than 1 mm, the exit status is 1, and the motion is
-    still printed and written.
+    If the motion stops early, the exit status is 1, and the motion before the stop is still printed and written.
     """
     if also and out is None:
         raise click.UsageError("--also needs --out DIR.")
@@ -64,7 +63,7 @@ def track(request: Request, out: Path | None, dark: bool, also: tuple[str, ...])
             name = kind if kind == "rosbag" else f"run.{kind}"
             files[name] = writers.get(kind, lambda file: animate(run, file, dark=dark))
         write_files(out, {**files, "run.npz": run.save, "job.toml": motion.save})
-    if not run.status or run.status.left_path:
+    if not run.status:
         raise click.ClickException("the motion is not complete: the status above has the cause and a remedy")
 
 
