@@ -176,7 +176,9 @@ def draw(motion: Motion) -> Any:
     figure = Figure(figsize=(8.0, 9.0), dpi=150, layout="constrained")
     axes = figure.subplots(4, 1, sharex=True)
     axes[0].semilogy(t, 1e3 * np.array(motion.tip), color=OKABE_ITO[5], lw=1.2, label="position [mm]")
-    axes[0].semilogy(t, 1e3 * np.array(motion.orientation), color=OKABE_ITO[0], lw=1.0, ls="--", label="orientation [mrad]")
+    axes[0].semilogy(
+        t, 1e3 * np.array(motion.orientation), color=OKABE_ITO[0], lw=1.0, ls="--", label="orientation [mrad]"
+    )
     axes[0].axhline(1.0, color="0.5", lw=0.8, ls="--", label="1 mm and 1 mrad")
     axes[0].set(ylabel="tip error", ylim=(1e-3, 3e3))
     axes[0].legend(loc="lower center", bbox_to_anchor=(0.62, 0.0), frameon=False)

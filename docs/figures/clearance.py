@@ -135,7 +135,7 @@ def film(clearance: fp.Clearance, runs: dict[str, fp.Run]) -> Iterator[np.ndarra
         strip.text(0.05, -12.5, "overlap", fontsize=8, color=WRONG)
         strip.text(0.05, 1.8, "margin", fontsize=8)
         strip.set(xlabel="time [s]", ylabel="distance [cm]")
-        strip.legend(loc="upper right", fontsize=8, frameon=False, ncols=2)
+        strip.legend(loc="lower right", fontsize=8, frameon=False, ncols=2)
         strip.spines[["top", "right"]].set_visible(False)
         figure.canvas.draw()
         yield np.asarray(figure.canvas.buffer_rgba())[..., :3].copy()

@@ -95,7 +95,7 @@ def main() -> None:
             axis.axhline(1.0, color="black", linewidth=0.8, linestyle="--", label="bound")
     for axis, label in zip(axes[:, 0], ("tip [m]", "largest |q̈| / A", "largest jerk / J"), strict=True):
         axis.set_ylabel(label)
-    axes[0, 0].legend(loc="upper left", ncols=3, frameon=False)
+    axes[0, 0].legend(loc="lower left", frameon=False)
     axes[1, 1].legend(loc="upper right", bbox_to_anchor=(1.0, 0.97), frameon=False)
     for axis in axes.flat:
         axis.spines[["top", "right"]].set_visible(False)

@@ -5,7 +5,7 @@ motion at joint-velocity level (MVN, WMVN) or at joint-acceleration level (MAN, 
 are radians, metres and seconds. Numbers in brackets are the equations of Wang et al., IEEE Access 2019.
 """
 
-from . import arms, paths, robots, schemes, shown, tasks
+from . import arms, paths, robots, schemes, tasks
 from ._core import (
     MAX_DOF,
     Kinematics,

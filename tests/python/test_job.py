@@ -224,7 +224,9 @@ def test_bounds() -> None:
 
 
 def test_a_run_equals_that_of_the_library() -> None:
-    motion = prepare({"arm": PANDA, "path": {"kind": "circle", "duration": 1.0}, "run": {"task": "pose"}})
+    motion = prepare(
+        {"arm": PANDA, "path": {"kind": "circle", "radius": 0.1, "duration": 1.0}, "run": {"task": "pose"}}
+    )
     scheme = fp.FPBM(0.6, np.ones(7), 10, 25, null_damping=2)
     run = fp.simulate(motion.arm, fp.Circle(0.1, 1.0).in_plane("yz"), scheme, READY, task="pose")
     np.testing.assert_array_equal(motion.run().q, run.q)

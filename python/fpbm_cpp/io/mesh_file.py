@@ -6,7 +6,6 @@ import os
 from pathlib import Path
 
 import numpy as np
-
 from numpy.typing import NDArray
 
 from .._types import Array

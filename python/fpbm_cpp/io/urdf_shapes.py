@@ -90,11 +90,11 @@ class Shape:
         row, column = np.nonzero(side[edges])
         out, other = edges[row, column], edges[row, 1 - column]
         share = (np.where(side[out] < 0, low, high) - s[out]) / (s[other] - s[out])
-        corners = [self.corners[inside], self.corners[out] + share[:, None] * (self.corners[other] - self.corners[out])]
+        ends_at_planes = self.corners[out] + share[:, None] * (self.corners[other] - self.corners[out])
         index = np.cumsum(inside) - 1
         cut = index[edges]
         cut[row, column] = np.count_nonzero(inside) + np.arange(len(row))
-        corners = np.vstack(corners)
+        corners = np.vstack([self.corners[inside], ends_at_planes])
         sides = [_section(corners, u, bound) for bound in (low, high) if np.isfinite(bound)]
         mine = (self.centers @ u >= low) & (self.centers @ u < high)
         return Shape(

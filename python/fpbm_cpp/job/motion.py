@@ -71,8 +71,8 @@ GOOD = 0.8  # Accepted inverse condition number, relative to the best.
 
 
 CIRCLE = 0.08  # Default radius of a circle, in reaches: 0.1 m for the preset arms, whose reach is 1.2 m to 1.7 m.
-HALVINGS = 4  # Smaller radii that are tried.
-TRIAL_GAIN, TRIAL_STEP, TRIAL_ERROR = 10.0, 0.01, 1e-3  # [1/s], [s], [m]
+HALVINGS = 8  # Smaller radii that are tried.
+TRIAL_GAIN, TRIAL_STEP, TRIAL_STEPS, TRIAL_ERROR = 10.0, 0.01, 200, 1e-3  # [1/s], [s], at least, [m]
 
 Jacobian = Callable[[Array], Array]
 
@@ -200,7 +200,8 @@ def filled(job: Table, arm: Arm | Robot) -> Table:
         if "q0" not in run:
             preset = job["arm"].get("name")
             run["q0"] = list(READY.get(preset) or ready(arm, kind, stack))
-    pieces = _scaled(path, pieces, arm, run if stack is None else None)
+    limits = make("limits", job.get("limits", {}), arm)
+    pieces = _scaled(path, pieces, arm, limits, run if stack is None else None)
     full = {**job, "path": pieces, "scheme": scheme, "run": run}
     if "bounds" in job:
         full["limits"] = job.get("limits", {})  # Without limits, no arm can stop in time.
@@ -284,21 +285,22 @@ def _filled_path(said: Table, arm: Arm | Robot) -> Table:
     return {"in_plane": "yz", **whole} if len(shape.sample(0.0)[0]) == 2 else whole
 
 
-def _scaled(said: Any, full: Any, arm: Arm | Robot, run: Table | None) -> Any:
-    """The paths with the default radius of circles: CIRCLE times the reach, halved until the tip can follow the path.
+def _scaled(said: Any, full: Any, arm: Arm | Robot, limits: JointLimits, run: Table | None) -> Any:
+    """The paths with the default radius of circles: CIRCLE times the arm's length.
 
-    run: the options of the run; None for a stack, whose paths are not tried.
+    The radius is halved until the tip can follow the path, unless HALVINGS do not suffice. run: the options of the run;
+    None for a stack, whose paths are not tried.
     """
     radius = float(f"{CIRCLE * _reach(arm):.1g}")
-    paths = _with_radius(said, full, radius)
-    if radius == 0.0 or paths == _with_radius(said, full, 2 * radius):
+    first = _with_radius(said, full, radius)
+    if radius == 0.0 or first == _with_radius(said, full, 2 * radius):
         return full
-    for _ in range(HALVINGS):
-        if run is None or _can_follow(arm, make("path", paths, arm), run):
-            break
-        radius /= 2
-        paths = _with_radius(said, full, radius)
-    return paths
+    if run is not None:
+        for halvings in range(HALVINGS + 1):
+            paths = _with_radius(said, full, radius / 2**halvings)
+            if _can_follow(arm, make("path", paths, arm), limits, run):
+                return paths
+    return first
 
 
 def _with_radius(said: Any, full: Any, radius: float) -> Any:
@@ -314,21 +316,24 @@ def _reach(arm: Arm | Robot) -> float:
     """Bound on the distance of a tip from the base [m], with prismatic joints at zero."""
     if isinstance(arm, PlanarArm):
         return float(np.sum(arm.lengths))
+    if isinstance(arm, SerialArm):
+        return float(sum(np.linalg.norm(place[:3, 3]) for place in (*(each.placement for each in arm.joints), arm.tip)))
+    assert isinstance(arm, Robot)
     far = [0.0]
-    for i, each in enumerate(arm.joints):
-        joint, parent = (each.joint, each.parent) if isinstance(arm, Robot) else (each, i)
-        far.append(far[parent] + float(np.linalg.norm(joint.placement[:3, 3])))
-    return max(far) if isinstance(arm, Robot) else far[-1] + float(np.linalg.norm(arm.tip[:3, 3]))
+    for each in arm.joints:
+        far.append(far[each.parent] + float(np.linalg.norm(each.joint.placement[:3, 3])))
+    return max(far)
 
 
-def _can_follow(arm: Arm | Robot, path: Path, run: Table) -> bool:
-    """Whether MVN follows the path within the bounds on position and velocity. If the job is wrong: true."""
+def _can_follow(arm: Arm | Robot, path: Path, limits: JointLimits, run: Table) -> bool:
+    """Whether MVN follows the path within bounds on position, velocity and acceleration. If the job is wrong: true."""
     try:
-        found = simulate(arm, path, MVN(k=TRIAL_GAIN), run["q0"], dt=TRIAL_STEP, task=run["task"], partial=True)
+        dt = min(TRIAL_STEP, path.duration / TRIAL_STEPS)
+        found = simulate(arm, path, MVN(k=TRIAL_GAIN), run["q0"], dt=dt, task=run["task"], partial=True)
     except ValueError:
         return True  # prepare() reports the error.
-    limits = arm.limits
     inside = (found.q >= limits.lower) & (found.q <= limits.upper) & (np.abs(found.qd) <= limits.velocity)
+    inside &= np.abs(found.qdd) <= limits.acceleration
     return bool(found.status) and found.max_error() < TRIAL_ERROR and bool(np.all(inside))
 
 

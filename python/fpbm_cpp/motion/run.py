@@ -39,7 +39,7 @@ REMEDIES = {
     Status.OK: "Give the scheme larger gains (k1 and k2, or k), or shorten dt.",
     Status.COARSE: "Shorten dt.",
     Status.DAMPED: f"{SHRINK}, so that the path avoids singular postures.",
-    Status.SLOWED: f"Increase the duration of the path. {SHRINK}.",
+    Status.SLOWED: f"Increase the duration to slow the path. {SHRINK}.",
     Status.BLOCKED: "Move the path away from the nearest shape or task bound.",
     Status.RECOVERING: f"{SHRINK}, so that the path is in the workspace.",
     Status.STALLED: f"{SHRINK}, so that the path is in the workspace.",
@@ -253,9 +253,7 @@ class Run:
         arrays = {name: getattr(self, name) for name in (*ARRAYS, *LIMITED, *OF_STACKS)}
         return {name: np.asarray(array) for name, array in arrays.items() if array is not None}
 
-    def plot(
-        self, *, panels: str | Sequence[str] | None = None, dark: bool = False, bounds: bool = False
-    ) -> Figure:
+    def plot(self, *, panels: str | Sequence[str] | None = None, dark: bool = False, bounds: bool = False) -> Figure:
         """Figure of the motion on one page: arm snapshots, tip error, joints, limits, manipulability.
 
         A notebook shows the figure. panels: names of other panels, from fpbm_cpp.plot.panels.PANELS. dark: dark
@@ -357,7 +355,7 @@ class Run:
         )
 
     def _repr_html_(self) -> str:
-        rows = [
+        rows: list[list[object]] = [
             ["scheme", _brief(self.scheme)],
             ["arm", str(self.arm)],
             ["path", _brief(self.path)],

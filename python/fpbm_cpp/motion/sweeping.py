@@ -15,8 +15,8 @@ from ..arms import Arm, JointLimits, limits_of
 from ..errors import SweepInterrupted, extra, wrong
 from ..paths import Path
 from ..robots import Robot
-from ..shown import html_table, number
 from ..schemes import Scheme
+from ..shown import html_table, number
 from ..tasks import Stack
 from .run import LIMITED, Paths
 from .simulation import (

@@ -55,7 +55,9 @@ def _title(run: Run, width: int, lines_each: int) -> str:
     lines = [whole] if len(whole) <= width else [short(run.scheme), along]
     if not run.status:
         lines.append(f"stopped after t = {run.status.time:g} s")
-    return "\n".join(row for line in lines for row in textwrap.wrap(line, width, max_lines=lines_each, placeholder=" …"))
+    return "\n".join(
+        row for line in lines for row in textwrap.wrap(line, width, max_lines=lines_each, placeholder=" …")
+    )
 
 
 def lay_out(

@@ -71,7 +71,7 @@ def head_legend(axes: Any, theme: Theme, handles: Sequence[Any] | None = None) -
 
 
 def top_legend(axes: Any, theme: Theme) -> None:
-    """Legend of a few lines with long names, in the axes above all lines; the y axis gets longer."""
+    """Legend of a few lines with long names, in the axes, higher than each line; the y axis gets longer."""
     names = axes.get_legend_handles_labels()[1]
     if not names:
         return
