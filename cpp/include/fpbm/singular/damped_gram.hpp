@@ -104,6 +104,7 @@ class DampedGram {
   /// force(coefficients(b)) = (JW⁻¹Jᵀ + Δ)⁻¹b.
   template <bool kDamped>
   struct Solutions {
+    static constexpr bool kIsDamped = kDamped;
     const DampedGram& of;
 
     [[nodiscard]] Vector<M, Value> coefficients(const Vector<M, Value>& b) const noexcept {
@@ -118,6 +119,14 @@ class DampedGram {
         return entrywise(a, [&](Eigen::Index i) { return a.coeff(i) - taken.coeff(i); });
       }
       return of.factor_.project(a);
+    }
+    /// Projection of a on the null space of JC, times det(I − Δ/ε²), which is zero in a singular posture. The product
+    /// is continuous, although the projection is not continuous in a singular posture (docs/singularities.md, Secondary
+    /// motion). The second projection removes the round-off error of the first, ε_machine ‖J‖/σ_min.
+    [[nodiscard]] Vector<N, Value> secondary(const Vector<N, Value>& a) const noexcept {
+      if (!(of.determinant_ > Scalar(0))) return filled<Vector<N, Value>>(a.size());
+      const Vector<N, Value> projected = of.factor_.project(of.factor_.project(a));
+      return entrywise(a, [&](Eigen::Index i) { return Value(of.determinant_) * projected.coeff(i); });
     }
     [[nodiscard]] Vector<N, Value> motion(const Vector<M, Value>& coefficients) const noexcept {
       if constexpr (kDamped) return product(of.rows_, coefficients);
@@ -173,6 +182,7 @@ class DampedGram {
     }
     const LostDirections<M, Scalar> lost(even, threshold);
     lost_ = lost.count;
+    determinant_ = is_finite(factor_.inverse_trace()) ? lost.determinant : Scalar(0);
     if (!(lost_ > Scalar(0))) return undamped;
     Matrix<M, M, Value> gram;  // Lower triangle.
     gram.resize(m, m);
@@ -194,6 +204,7 @@ class DampedGram {
   RowFactor<M, N, Value> factor_;  ///< Factorisation of DJC.
   Cholesky<M, Value> damped_;      ///< Factorisation of D(JW⁻¹Jᵀ)D + Δ, if Δ ≠ 0.
   Scalar lost_{0};                 ///< tr Δ/ε², about the number of lost directions.
+  Scalar determinant_{1};          ///< det(I − Δ/ε²), or 0 if the null space of JC is not known.
 };
 
 }  // namespace fpbm

@@ -17,6 +17,7 @@ namespace fpbm {
 template <int M, typename Scalar>
 struct LostDirections {
   Scalar count{0};             ///< tr Δ/ε², about the number of lost directions.
+  Scalar determinant{1};       ///< det(I − Δ/ε²): 1 if no direction is lost, 0 in a singular posture.
   Matrix<M, M, Scalar> delta;  ///< Δ
 
   /// gram: G. Only the lower triangle is read.
@@ -35,6 +36,7 @@ struct LostDirections {
         subtract_multiple(delta.data() + j * gram.rows(), -weight * epsilon_squared * u(j), u.data(), gram.rows());
       }
       count += weight;
+      determinant *= Scalar(1) - weight;
     }
   }
 
