@@ -128,19 +128,23 @@ class LimitedState {
       progress_.watch_shapes(tick_.joints.qd.isZero(Scalar(0)), guard_.near_distance_sum(), correction_.length());
     }
     make_admissible(next);
+    [[maybe_unused]] JointState apart;  // The desired state with the motion away from shapes.
     if constexpr (kGuarded) {
-      if (guard_.moves_away() && !failed(result.status)) {
-        next = tick_.after(tick_.motion_to(next) + null_space_motion_away(loop.arm, next.q));
-      }
-      guard_.bound_speeds(limits(), tick_.joints, tick_.motion_to(next), rows);
+      apart = next;
+      if (moves_away(result)) apart = tick_.after(tick_.motion_to(next) + null_space_motion_away(loop.arm, next.q));
+      guard_.bound_speeds(limits(), tick_.joints, tick_.motion_to(apart), rows);
     }
-    if (!is_brakable(next)) result.status = Status::kNotFinite;
+    const JointState& whole = kGuarded ? apart : next;
+    if (!is_brakable(whole)) result.status = Status::kNotFinite;
     const bool recovering = progress_.recovering() && !stopping_ && !failed(result.status);
     if (progress_.stalled() && !recovering) result.status = worse(result.status, Status::kStalled);
     if (recovering) {
       next = recovery_tick(rows, result);
-    } else if (stopping_ || result.status >= Status::kStalled || !rows.admit(tick_.motion_to(next)) || !admits(next)) {
+    } else if (stopping_ || result.status >= Status::kStalled || !rows.admit(tick_.motion_to(whole)) ||
+               !admits(whole)) {
       next = limited_tick(loop, now, rows, next, field, one_acceleration, result);
+    } else if constexpr (kGuarded) {
+      next = apart;
     }
     if constexpr (kGuarded) keep_clear(next, result);
     result.q = next.q;
@@ -186,28 +190,18 @@ class LimitedState {
   [[nodiscard]] JointState limited_tick(Loop& loop, const Target& now, const Rows& rows, const JointState& next,
                                         const JointVector& field, bool one_acceleration,
                                         Result& result) const noexcept {
-    JointVector desired = next.qd;
+    JointVector desired = tick_.motion_to(next);
     Scalar fraction(1);  // Fraction of the velocities of the scheme.
-    const auto slowed = [&](const JointVector& u) {
-      return entrywise(u, [&](Eigen::Index i) { return fraction * u.coeff(i); });
-    };
+    // With the Jacobian in the middle of the tick, joints that compensate for saturated joints do not disturb the tip.
     if constexpr (kSecondOrder) {
-      desired = tick_.acceleration_to(next);
+      if (!one_acceleration) loop.arm.kinematics(tick_.middle_of(next.q), loop.kinematics);
     } else if (!failed(result.status)) {
       fraction = followable_fraction(loop, limits(), correction_(now), tick_.joints.q, field);
-      if (fraction < Scalar(1)) desired = slowed(field);
+      result.status = worse(result.status, tick_.evaluate_middle(loop, correction_(ahead(now, dt() / 2)), desired));
+      desired = entrywise(desired, [&](Eigen::Index i) { return fraction * desired.coeff(i); });
     }
-    const bool several = has_lower_levels(loop.kinematics);
-    if constexpr (kHasLevels) {
-      if (several && !failed(result.status) && !one_acceleration) {
-        result.status = worse(result.status, tick_.evaluate_middle(loop, correction_(ahead(now, dt() / 2)), desired));
-        if (fraction < Scalar(1)) desired = slowed(desired);
-      }
-    }
-    if (!several && !one_acceleration) {
-      // With the Jacobian in the middle of the tick, joints that compensate for saturated joints do not disturb the
-      // tip.
-      loop.arm.kinematics(tick_.middle_of(next.q), loop.kinematics);
+    if constexpr (kGuarded) {
+      if (moves_away(result)) desired += null_space_motion(jacobian_in_metres(loop.kinematics), guard_.away());
     }
     const JointVector u = limited_motion(loop.kinematics, desired, rows, result);
     if (fraction < Scalar(1)) {
@@ -276,6 +270,10 @@ class LimitedState {
   /// Whether the limits admit a tick to the state `next`.
   [[nodiscard]] bool admits(const JointState& next) const noexcept {
     return limiter_.admits(tick_.joints, next, tick_.last);
+  }
+
+  [[nodiscard]] bool moves_away(const Result& result) const noexcept {
+    return guard_.moves_away() && !failed(result.status);
   }
 
   /// Null-space part of the motion away from shapes, in the middle of a tick that ends at the posture `end`.

@@ -45,6 +45,7 @@ class DampedLevel {
     if (!(directions.count > Scalar(0))) return false;
     if (cholesky.factor(sum_of(gram, directions.delta)) != Status::kOk) return false;
     lost_ += directions.count;
+    determinant_ = directions.determinant;
     r = dependent ? cholesky.solve(transpose_times(L, r)) : transpose_times(L, cholesky.solve(r));
     return true;
   }
@@ -54,6 +55,9 @@ class DampedLevel {
 
   /// tr Δ/ε², about the number of lost directions, plus the number of dependent rows.
   [[nodiscard]] Scalar lost() const noexcept { return lost_; }
+
+  /// det(I − Δ/ε²): 1 if no direction is damped, 0 if L is singular in a direction that is not a dependent row.
+  [[nodiscard]] Scalar determinant() const noexcept { return determinant_; }
 
  private:
   /// ‖L⁻¹‖²_F.
@@ -97,6 +101,7 @@ class DampedLevel {
 
   Scalar epsilon_squared_;
   Scalar lost_{0};
+  Scalar determinant_{1};
 };
 
 }  // namespace fpbm
