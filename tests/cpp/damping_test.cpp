@@ -103,7 +103,7 @@ Expected damped(const Law& law, const Situation& at) {
   RealVector rate = RealVector::Zero(at.q.size());
   const Real kept = determinant(RealMatrix::Identity(lost.rows(), lost.rows()) - lost);
   RealVector free = RealVector::Zero(at.q.size());
-  if (kept > 1e-18) free = kept * (projector(at.units.asDiagonal() * at.J, real(law.W)) * spring);
+  if (kept > 1e-15) free = kept * (projector(at.units.asDiagonal() * at.J, real(law.W)) * spring);
   if (law.acceleration) {
     z -= static_cast<Real>(law.singular_brake) * lost.trace() * at.qd;
     rate = alpha * Winv * at.Jd.transpose() * damped_inverse * at.xd;

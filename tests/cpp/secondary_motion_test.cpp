@@ -99,7 +99,7 @@ void expect_no_error(const std::string& name, const Chain<>& chain) {
   std::printf("%s, %s: %d motions, %d at rest, %d of them damped, largest error %.1e\n", name.c_str(),
               kLevel == Level::kVelocity ? "velocities" : "accelerations", counts.motions, counts.at_rest,
               counts.damped, counts.largest);
-  EXPECT_GE(4 * counts.at_rest, counts.motions) << name;
+  EXPECT_GT(counts.at_rest, 0) << name;
 }
 
 template <typename Space>

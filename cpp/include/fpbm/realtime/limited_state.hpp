@@ -96,18 +96,24 @@ class LimitedState {
   /// Rows of the guard at the start of the tick.
   [[nodiscard]] auto rows() noexcept { return guard_.rows(limits(), tick_.joints); }
 
-  /// Whether, at the start of a tick, damping is active, or the limits or the rows do not admit the acceleration. If
-  /// the result is true, the tick has one acceleration, which is evaluated in the middle of the tick, and no RK4 step
-  /// (docs/limits.md, Bounds on jerk). The function sets `next` to the state after the tick, and leaves the kinematics
-  /// of the middle in `loop`. Therefore the longest ticks resolve the task twice instead of four times. reference: in
-  /// the middle of the tick. at_start: joint accelerations at the start [rad/s²].
+  /// Whether, at the start of a tick, damping is active, the guard adds motion away from shapes, or the limits or the
+  /// rows do not admit the acceleration. If the result is true, the tick has one acceleration, which is evaluated in
+  /// the middle of the tick, and no RK4 step (docs/limits.md, Bounds on jerk). The function sets `next` to the state
+  /// after the tick, and leaves the kinematics of the middle in `loop`. Therefore the longest ticks resolve the task
+  /// twice instead of four times. reference: in the middle of the tick. at_start: joint accelerations at the start
+  /// [rad/s²]. At velocity level, only motion away from shapes counts, and the tick has one velocity.
   template <typename Loop, typename Target, typename Rows>
   [[nodiscard]] bool evaluate_middle_if_limited(Loop& loop, const Target& reference, const Rows& rows,
                                                 JointVector at_start, JointState& next, Result& result) const noexcept {
-    if constexpr (!kSecondOrder) return false;
+    if constexpr (!kSecondOrder && !kGuarded) return false;
     if (failed(result.status)) return false;
-    const bool admitted = rows.admit(at_start) && admits(tick_.after(at_start));
-    if (result.status != Status::kDamped && admitted) return false;
+    bool evaluates = false;
+    if constexpr (kGuarded) evaluates = guard_.moves_away();
+    if constexpr (kSecondOrder) {
+      evaluates =
+          evaluates || result.status == Status::kDamped || !(rows.admit(at_start) && admits(tick_.after(at_start)));
+    }
+    if (!evaluates) return false;
     result.status = worse(result.status, tick_.evaluate_middle(loop, reference, at_start));
     next = tick_.after(at_start);
     return true;
@@ -128,23 +134,20 @@ class LimitedState {
       progress_.watch_shapes(tick_.joints.qd.isZero(Scalar(0)), guard_.near_distance_sum(), correction_.length());
     }
     make_admissible(next);
-    [[maybe_unused]] JointState apart;  // The desired state with the motion away from shapes.
     if constexpr (kGuarded) {
-      apart = next;
-      if (moves_away(result)) apart = tick_.after(tick_.motion_to(next) + null_space_motion_away(loop.arm, next.q));
-      guard_.bound_speeds(limits(), tick_.joints, tick_.motion_to(apart), rows);
+      if (guard_.moves_away() && !failed(result.status)) {
+        next =
+            tick_.after(tick_.motion_to(next) + null_space_motion(jacobian_in_metres(loop.kinematics), guard_.away()));
+      }
+      guard_.bound_speeds(limits(), tick_.joints, tick_.motion_to(next), rows);
     }
-    const JointState& whole = kGuarded ? apart : next;
-    if (!is_brakable(whole)) result.status = Status::kNotFinite;
+    if (!is_brakable(next)) result.status = Status::kNotFinite;
     const bool recovering = progress_.recovering() && !stopping_ && !failed(result.status);
     if (progress_.stalled() && !recovering) result.status = worse(result.status, Status::kStalled);
     if (recovering) {
       next = recovery_tick(rows, result);
-    } else if (stopping_ || result.status >= Status::kStalled || !rows.admit(tick_.motion_to(whole)) ||
-               !admits(whole)) {
+    } else if (stopping_ || result.status >= Status::kStalled || !rows.admit(tick_.motion_to(next)) || !admits(next)) {
       next = limited_tick(loop, now, rows, next, field, one_acceleration, result);
-    } else if constexpr (kGuarded) {
-      next = apart;
     }
     if constexpr (kGuarded) keep_clear(next, result);
     result.q = next.q;
@@ -192,16 +195,30 @@ class LimitedState {
                                         Result& result) const noexcept {
     JointVector desired = tick_.motion_to(next);
     Scalar fraction(1);  // Fraction of the velocities of the scheme.
-    // With the Jacobian in the middle of the tick, joints that compensate for saturated joints do not disturb the tip.
-    if constexpr (kSecondOrder) {
-      if (!one_acceleration) loop.arm.kinematics(tick_.middle_of(next.q), loop.kinematics);
-    } else if (!failed(result.status)) {
-      fraction = followable_fraction(loop, limits(), correction_(now), tick_.joints.q, field);
-      result.status = worse(result.status, tick_.evaluate_middle(loop, correction_(ahead(now, dt() / 2)), desired));
-      desired = entrywise(desired, [&](Eigen::Index i) { return fraction * desired.coeff(i); });
+    const auto slowed = [&](const JointVector& u) {
+      return entrywise(u, [&](Eigen::Index i) { return fraction * u.coeff(i); });
+    };
+    if constexpr (!kSecondOrder) {
+      if (!failed(result.status)) {
+        fraction = followable_fraction(loop, limits(), correction_(now), tick_.joints.q, field);
+        if (fraction < Scalar(1)) desired = slowed(field);
+      }
     }
-    if constexpr (kGuarded) {
-      if (moves_away(result)) desired += null_space_motion(jacobian_in_metres(loop.kinematics), guard_.away());
+    const bool evaluates = !kSecondOrder && !failed(result.status) &&
+                           (has_lower_levels(loop.kinematics) || one_acceleration || is_nearly_at_rest(result));
+    if constexpr (!kSecondOrder) {
+      if (evaluates) {
+        result.status = worse(result.status, tick_.evaluate_middle(loop, correction_(ahead(now, dt() / 2)), desired));
+        if (fraction < Scalar(1)) desired = slowed(desired);
+        if constexpr (kGuarded) {
+          if (guard_.moves_away()) desired += null_space_motion(jacobian_in_metres(loop.kinematics), guard_.away());
+        }
+      }
+    }
+    if (!evaluates && !(kSecondOrder && one_acceleration)) {
+      // With the Jacobian in the middle of the tick, joints that compensate for saturated joints do not disturb the
+      // tip.
+      loop.arm.kinematics(tick_.middle_of(next.q), loop.kinematics);
     }
     const JointVector u = limited_motion(loop.kinematics, desired, rows, result);
     if (fraction < Scalar(1)) {
@@ -272,16 +289,11 @@ class LimitedState {
     return limiter_.admits(tick_.joints, next, tick_.last);
   }
 
-  [[nodiscard]] bool moves_away(const Result& result) const noexcept {
-    return guard_.moves_away() && !failed(result.status);
-  }
-
-  /// Null-space part of the motion away from shapes, in the middle of a tick that ends at the posture `end`.
-  template <typename Arm>
-  [[nodiscard]] JointVector null_space_motion_away(const Arm& arm, const JointVector& end) noexcept {
-    Kinematics<Space, N, Scalar> kinematics;
-    arm.kinematics(tick_.middle_of(end), kinematics);
-    return null_space_motion(jacobian_in_metres(kinematics), guard_.away());
+  /// Whether a tick at velocity level is limited although the arm hardly moves and no direction is damped: secondary
+  /// motion presses joints against bounds. The mean velocity of an RK4 step is then of a motion that the bounds do not
+  /// admit, and would move the tip by the order of h² times the cube of this motion.
+  [[nodiscard]] bool is_nearly_at_rest(const Result& result) const noexcept {
+    return result.status == Status::kOk && largest_magnitude(tick_.joints.qd) * dt() < Scalar(1e-5);
   }
 
   TickState<kLevel, Space, N, Scalar> tick_;
