@@ -74,6 +74,17 @@ RealMatrix lost_directions(const RealMatrix& J, double radius) {
   return lost;
 }
 
+/// Π (1 − (1 − s²)³) of all s = σ/(0.1 ε) below 1.
+Real secondary_scale(const RealMatrix& J, double radius) {
+  const Real edge = static_cast<Real>(0.1 * radius) * J.norm();
+  Real scale = 1;
+  for (const Real sigma : spectrum(J).sigma) {
+    const Real ratio = sigma / edge;
+    if (ratio < 1) scale *= 1 - std::pow(1 - ratio * ratio, Real(3));
+  }
+  return scale;
+}
+
 /// The expected result of a damped scheme, and the size of the terms in its sum.
 struct Expected {
   RealVector u;
@@ -81,7 +92,7 @@ struct Expected {
 };
 
 /// The laws as printed, with damped J⁺ and J_W⁺, and the brake in z. The part of z that depends on the posture has the
-/// factor det(I − Δ/ε²), and is projected on the null space of J.
+/// factor secondary_scale(), and is projected on the null space of J.
 Expected damped(const Law& law, const Situation& at) {
   const auto alpha = static_cast<Real>(law.alpha);
   const RealMatrix even = at.units.asDiagonal() * at.J;
@@ -101,7 +112,7 @@ Expected damped(const Law& law, const Situation& at) {
   const RealVector spring = secondary(law, at_rest);
   RealVector z = secondary(law, at) - spring;
   RealVector rate = RealVector::Zero(at.q.size());
-  const Real kept = determinant(RealMatrix::Identity(lost.rows(), lost.rows()) - lost);
+  const Real kept = secondary_scale(even, law.singular_radius);
   RealVector free = RealVector::Zero(at.q.size());
   if (kept > 1e-15) free = kept * (projector(at.units.asDiagonal() * at.J, real(law.W)) * spring);
   if (law.acceleration) {

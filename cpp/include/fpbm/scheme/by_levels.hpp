@@ -51,10 +51,10 @@ struct ByLevels {
                                const Reference<Space, Scalar>& reference, const State<kDof, Scalar>& state,
                                JointVector& u, Scalar* sigma = nullptr) const noexcept {
     JointVector result;
-    Scalar determinant(1);
-    Status status = resolve_levels(kinematics, reference, state, false, determinant, result, sigma);
-    if (determinant < Scalar(1) && !failed(status) && scheme.null_space.template active<Level::kVelocity>()) {
-      status = resolve_levels(kinematics, reference, state, true, determinant, result, sigma);
+    bool damped = false;
+    Status status = resolve_levels(kinematics, reference, state, false, damped, result, sigma);
+    if (damped && !failed(status) && scheme.null_space.template active<Level::kVelocity>()) {
+      status = resolve_levels(kinematics, reference, state, true, damped, result, sigma);
     }
     if (failed(status)) return status;
     if (!is_finite(result)) return Status::kNotFinite;
@@ -63,18 +63,17 @@ struct ByLevels {
   }
 
  private:
-  /// Resolves all levels. determinant: product of DampedLevel::determinant() of the lower levels. apart: whether the
-  /// lower levels are resolved without the posture-dependent part of z, which is then projected on the null space of
-  /// all levels and multiplied by the determinant. Otherwise, the damped pseudoinverse of a lower level would not
+  /// Resolves all levels. Sets `damped` if directions of a lower level are damped. apart: whether the lower levels are
+  /// resolved without the posture-dependent part of z, which is then projected on the null space of all levels and
+  /// multiplied by DampedLevel::fade() of each level. Otherwise, the damped pseudoinverse of a lower level would not
   /// remove this part from the level.
   [[nodiscard]] Status resolve_levels(const Kinematics<Space, kDof, Scalar>& kinematics,
                                       const Reference<Space, Scalar>& reference, const State<kDof, Scalar>& state,
-                                      bool apart, Scalar& determinant, JointVector& result,
-                                      Scalar* sigma) const noexcept {
+                                      bool apart, bool& damped, JointVector& result, Scalar* sigma) const noexcept {
     LevelSpace<kDof, Scalar> space(state.q.size());
     JointVector secondary;
     Status status = Status::kOk;
-    determinant = Scalar(1);
+    Scalar fade(1);
     each_level([&](auto k) noexcept {
       constexpr int kIndex = decltype(k)::value;
       const auto& level = std::get<kIndex>(kinematics.levels);
@@ -95,10 +94,10 @@ struct ByLevels {
         }
         if constexpr (Stack_::kLevels > 1) space.add(level.J);
       } else {
-        if (space.rank() < space.size()) result += added(level, r, result, space, determinant);
+        if (space.rank() < space.size()) result += added(level, r, result, space, fade, damped);
       }
     });
-    if (apart) result += determinant * space.project(secondary);
+    if (apart) result += fade * space.project(secondary);
     return status;
   }
 
@@ -139,21 +138,22 @@ struct ByLevels {
   }
 
   /// Returns u_k − u_{k−1} of a lower level, and adds the level to the space. Returns zero if the rows are not finite.
-  /// r: b_k. Multiplies the determinant by DampedLevel::determinant().
+  /// r: b_k. Multiplies `fade` by DampedLevel::fade(), and sets `damps` if directions are damped.
   template <int M>
   [[nodiscard]] JointVector added(const LevelRows<M, kDof, Scalar>& level, Vector<M, Scalar> r, const JointVector& u,
-                                  LevelSpace<kDof, Scalar>& space, Scalar& determinant) const noexcept {
+                                  LevelSpace<kDof, Scalar>& space, Scalar& fade, bool& damps) const noexcept {
     r -= product(level.J, u);
     if (!r.allFinite()) return filled<JointVector>(u.size());
     const ScaledLevel<M, kDof, Scalar> scaled(level.J, r);
     DampedLevel<M, Scalar> damped(radius * radius);
     const JointVector y = space.add(scaled.J, scaled.r, damped);
-    determinant *= damped.determinant();
+    fade *= damped.fade();
+    damps = damps || damped.damps();
     return y;
   }
   /// added() for a posture of all joints: J Z has orthonormal columns.
   [[nodiscard]] JointVector added(const PostureRows<kDof, Scalar>& level, const JointVector& r, const JointVector& u,
-                                  LevelSpace<kDof, Scalar>& space, Scalar&) const noexcept {
+                                  LevelSpace<kDof, Scalar>& space, Scalar&, bool&) const noexcept {
     if (!r.allFinite()) return filled<JointVector>(u.size());
     JointVector y = u;
     for (Eigen::Index i = 0; i < r.size(); ++i) {

@@ -121,13 +121,13 @@ class DampedGram {
       }
       return of.factor_.project(a);
     }
-    /// Projection of a on the null space of JC, times det(I − Δ/ε²), which is zero in a singular posture. The product
-    /// is continuous, although the projection is not continuous in a singular posture (docs/singularities.md, Secondary
-    /// motion). The second projection removes the round-off error of the first, ε_machine ‖J‖/σ_min.
+    /// Projection of a on the null space of JC, times LostDirections::fade, which is zero in a singular posture. The
+    /// product is continuous, although the projection is not continuous in a singular posture (docs/singularities.md,
+    /// Secondary motion). The second projection removes the round-off error of the first, ε_machine ‖J‖/σ_min.
     [[nodiscard]] Vector<N, Value> secondary(const Vector<N, Value>& a) const noexcept {
-      if (!(of.determinant_ > Scalar(0))) return filled<Vector<N, Value>>(a.size());
+      if (!(of.fade_ > Scalar(0))) return filled<Vector<N, Value>>(a.size());
       const Vector<N, Value> projected = of.factor_.project(of.factor_.project(a));
-      return entrywise(a, [&](Eigen::Index i) { return Value(of.determinant_) * projected.coeff(i); });
+      return entrywise(a, [&](Eigen::Index i) { return Value(of.fade_) * projected.coeff(i); });
     }
     [[nodiscard]] Vector<N, Value> motion(const Vector<M, Value>& coefficients) const noexcept {
       if constexpr (kDamped) return product(of.rows_, coefficients);
@@ -185,7 +185,7 @@ class DampedGram {
     lost_ = lost.count;
     // σ² has a round-off error of a few ε_machine ‖J‖². If σ² is not larger, the null space of JC is unknown.
     const Scalar round_off = kRoundOff / (damping_.radius() * damping_.radius());
-    determinant_ = lost.determinant > round_off ? lost.determinant : Scalar(0);
+    fade_ = lost.fade > round_off ? lost.fade : Scalar(0);
     if (!(lost_ > Scalar(0))) return undamped;
     Matrix<M, M, Value> gram;  // Lower triangle.
     gram.resize(m, m);
@@ -200,8 +200,8 @@ class DampedGram {
     return status == Status::kOk ? Status::kDamped : status;
   }
 
-  /// Round-off error of det(I − Δ/ε²) times radius². `fpbm_tests --gtest_filter='Spectra*secondary*'` prints 4e-12 with
-  /// 0, and 1e-13 with 4 to 64 ε_machine.
+  /// Round-off error of LostDirections::fade times radius². `fpbm_tests --gtest_filter='Spectra*secondary*'` prints
+  /// 4e-12 with 0, and 1e-13 with 4 to 64 ε_machine.
   static constexpr auto kRoundOff = 16 * std::numeric_limits<Number<Scalar>>::epsilon();
 
   SingularDamping<Scalar> damping_;
@@ -211,7 +211,7 @@ class DampedGram {
   RowFactor<M, N, Value> factor_;  ///< Factorisation of DJC.
   Cholesky<M, Value> damped_;      ///< Factorisation of D(JW⁻¹Jᵀ)D + Δ, if Δ ≠ 0.
   Scalar lost_{0};                 ///< tr Δ/ε², about the number of lost directions.
-  Scalar determinant_{1};          ///< det(I − Δ/ε²), or 0 if the null space of JC is not known.
+  Scalar fade_{1};                 ///< LostDirections::fade, or 0 if the null space of JC is not known.
 };
 
 }  // namespace fpbm
