@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <string>
@@ -73,13 +74,25 @@ RealMatrix lost_directions(const RealMatrix& J, double radius) {
   return lost;
 }
 
+/// Π (1 − (1 − s²)³) of all s = σ/(0.1 ε) below 1.
+Real secondary_scale(const RealMatrix& J, double radius) {
+  const Real edge = static_cast<Real>(0.1 * radius) * J.norm();
+  Real scale = 1;
+  for (const Real sigma : spectrum(J).sigma) {
+    const Real ratio = sigma / edge;
+    if (ratio < 1) scale *= 1 - std::pow(1 - ratio * ratio, Real(3));
+  }
+  return scale;
+}
+
 /// The expected result of a damped scheme, and the size of the terms in its sum.
 struct Expected {
   RealVector u;
   double size;
 };
 
-/// The laws as printed, with damped J⁺ and J_W⁺, and the brake in z.
+/// The laws as printed, with damped J⁺ and J_W⁺, and the brake in z. The part of z that depends on the posture has the
+/// factor secondary_scale(), and is projected on the null space of J.
 Expected damped(const Law& law, const Situation& at) {
   const auto alpha = static_cast<Real>(law.alpha);
   const RealMatrix even = at.units.asDiagonal() * at.J;
@@ -94,16 +107,22 @@ Expected damped(const Law& law, const Situation& at) {
   const RealMatrix Jp = at.J.transpose() * inverse(at.J * at.J.transpose() + delta);
   const RealMatrix JWp = Winv * at.J.transpose() * damped_inverse;
   const RealVector b = commanded(law, at);
-  RealVector z = secondary(law, at);
+  Situation at_rest = at;
+  at_rest.qd.setZero();
+  const RealVector spring = secondary(law, at_rest);
+  RealVector z = secondary(law, at) - spring;
   RealVector rate = RealVector::Zero(at.q.size());
+  const Real kept = secondary_scale(even, law.singular_radius);
+  RealVector free = RealVector::Zero(at.q.size());
+  if (kept > 1e-15) free = kept * (projector(at.units.asDiagonal() * at.J, real(law.W)) * spring);
   if (law.acceleration) {
     z -= static_cast<Real>(law.singular_brake) * lost.trace() * at.qd;
     rate = alpha * Winv * at.Jd.transpose() * damped_inverse * at.xd;
   }
   const RealVector v = z + rate;
   const RealVector task = (1 - alpha) * Jp * b + alpha * JWp * b;
-  return {task + v - JWp * at.J * v,
-          static_cast<double>((Jp.norm() + JWp.norm()) * b.norm() + (1 + JWp.norm() * at.J.norm()) * v.norm())};
+  const Real size = (Jp.norm() + JWp.norm()) * b.norm() + (1 + JWp.norm() * at.J.norm()) * (v.norm() + spring.norm());
+  return {task + v - JWp * at.J * v + free, static_cast<double>(size)};
 }
 
 /// Trials for each type of state.
@@ -428,6 +447,47 @@ TYPED_TEST(Spectra, bound_the_damped_inverse) {
     EXPECT_LE(edge * static_cast<double>(singular_values(weighted)(0)), 1.28 * spread * slack);
   });
   EXPECT_GT(largest, 1.16);
+}
+
+/// The largest |J u|/(‖J‖ |z|) of motions u = z without a command, at rest, for any singular values of J.
+template <int M, int N, typename Scheme>
+double task_motion_of(const Scheme& scheme, const Matrix<M, N>& J, const Vector<N>& q) {
+  Vector<N> u = Vector<N>::Zero();
+  const Vector<M> nothing = Vector<M>::Zero();
+  const State<N> at_rest{q, Vector<N>::Zero()};
+  const Status status = scheme.resolve_rows(nothing, nothing, J, Matrix<M, N>::Zero().eval(), at_rest, u);
+  EXPECT_FALSE(failed(status)) << message(status);
+  const double z = scheme.null_space.position_part(at_rest).norm();
+  EXPECT_LE(u.norm(), 4.0 * z);
+  return static_cast<double>((real(J) * real(u)).norm()) / (J.norm() * z);
+}
+
+/// Secondary motion has no task motion, whether or not directions are lost: rest posture and free choice, at both
+/// levels, with and without weights.
+TYPED_TEST(Spectra, have_secondary_motion_without_task_motion) {
+  using Fixture = TestFixture;
+  if constexpr (std::is_same_v<typename Fixture::Number, double>) {
+    constexpr int N = Fixture::N;
+    double largest = 0.0;
+    for (const double radius : {0.005, 0.02, 0.2}) {
+      Fixture::everywhere(2.0 * radius, [&](const auto& J, Random& random) {
+        const auto z = NullSpace<N>{}
+                           .with_damping(2.0)
+                           .with_rest_posture(random.uniform(N, -2.0, 2.0), 1.5)
+                           .with_free_choice(random.uniform(N, -1.0, 1.0));
+        const Vector<N> q = random.uniform(N, -2.0, 2.0);
+        const Vector<N> W = random.uniform(N, 0.5, 4.0);
+        const SingularDamping<> damping(radius);
+        const auto check = [&](const auto& scheme) { largest = std::max(largest, task_motion_of(scheme, J, q)); };
+        check(MVN<N>(1.0, z, damping));
+        check(WMVN<N>(W, 1.0, z, damping));
+        check(MAN<N>(z, damping));
+        for (const double alpha : {0.0, 0.6, 1.0}) check(Balanced<N>(alpha, W, z, damping));
+      });
+    }
+    EXPECT_LE(largest, 1e-12);
+    std::printf("largest |J u|/(|J| |z|): %.1e\n", largest);
+  }
 }
 
 /// σ_min/√M ≤ bound ≤ σ_min, and the bound is 0 if a direction is lost.

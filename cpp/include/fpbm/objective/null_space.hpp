@@ -135,6 +135,20 @@ class NullSpace {
     return z;
   }
 
+  /// Part of z that depends on the posture: z without kₙ qd.
+  [[nodiscard]] Vector<N, Scalar> position_part(const State<N, Scalar>& state) const noexcept {
+    return at<Level::kVelocity>(state);
+  }
+
+  /// Part of z that depends on the velocities, with additional damping: −(kₙ + brake) qd, or zero at velocity level.
+  template <Level kLevel>
+  [[nodiscard]] Vector<N, Scalar> velocity_part(const State<N, Scalar>& state, const Scalar& brake) const noexcept {
+    const Scalar damping = kLevel == Level::kAcceleration ? damping_ + brake : Scalar(0);
+    return entrywise(state.q, [&](Eigen::Index i) {
+      return kLevel == Level::kAcceleration ? Scalar(-damping * state.qd.coeff(i)) : Scalar(0);
+    });
+  }
+
  private:
   template <int, typename>
   friend class NullSpace;

@@ -98,18 +98,24 @@ class LimitedState {
   /// Rows of the guard at the start of the tick.
   [[nodiscard]] auto rows() noexcept { return guard_.rows(limits(), tick_.joints); }
 
-  /// Whether, at the start of a tick, damping is active, or the limits or the rows do not admit the acceleration. If
-  /// the result is true, the tick has one acceleration, which is evaluated in the middle of the tick, and no RK4 step
-  /// (docs/limits.md, Bounds on jerk). The function sets `next` to the state after the tick, and leaves the kinematics
-  /// of the middle in `loop`. Therefore the longest ticks resolve the task twice instead of four times. reference: in
-  /// the middle of the tick. at_start: joint accelerations at the start [rad/s²].
+  /// Whether, at the start of a tick, damping is active, the guard adds motion away from shapes, or the limits or the
+  /// rows do not admit the acceleration. If the result is true, the tick has one acceleration, which is evaluated in
+  /// the middle of the tick, and no RK4 step (docs/limits.md, Bounds on jerk). The function sets `next` to the state
+  /// after the tick, and leaves the kinematics of the middle in `loop`. Therefore the longest ticks resolve the task
+  /// twice instead of four times. reference: in the middle of the tick. at_start: joint accelerations at the start
+  /// [rad/s²]. At velocity level, only motion away from shapes counts, and the tick has one velocity.
   template <typename Loop, typename Target, typename Rows>
   [[nodiscard]] bool evaluate_middle_if_limited(Loop& loop, const Target& reference, const Rows& rows,
                                                 JointVector at_start, JointState& next, Result& result) const noexcept {
-    if constexpr (!kSecondOrder) return false;
+    if constexpr (!kSecondOrder && !kGuarded) return false;
     if (failed(result.status)) return false;
-    const bool admitted = rows.admit(at_start) && admits(tick_.after(at_start));
-    if (result.status != Status::kDamped && admitted) return false;
+    bool evaluates = false;
+    if constexpr (kGuarded) evaluates = guard_.moves_away();
+    if constexpr (kSecondOrder) {
+      evaluates =
+          evaluates || result.status == Status::kDamped || !(rows.admit(at_start) && admits(tick_.after(at_start)));
+    }
+    if (!evaluates) return false;
     result.status = worse(result.status, tick_.evaluate_middle(loop, reference, at_start));
     next = tick_.after(at_start);
     return true;
@@ -132,7 +138,8 @@ class LimitedState {
     make_admissible(next);
     if constexpr (kGuarded) {
       if (guard_.moves_away() && !failed(result.status)) {
-        next = tick_.after(tick_.motion_to(next) + null_space_motion_away(loop.arm, next.q));
+        next =
+            tick_.after(tick_.motion_to(next) + null_space_motion(jacobian_in_metres(loop.kinematics), guard_.away()));
       }
       guard_.bound_speeds(limits(), tick_.joints, tick_.motion_to(next), rows);
     }
@@ -189,25 +196,29 @@ class LimitedState {
   [[nodiscard]] JointState limited_tick(Loop& loop, const Target& now, const Rows& rows, const JointState& next,
                                         const JointVector& field, bool one_acceleration,
                                         Result& result) const noexcept {
-    JointVector desired = next.qd;
+    JointVector desired = tick_.motion_to(next);
     Scalar fraction(1);  // Fraction of the velocities of the scheme.
     const auto slowed = [&](const JointVector& u) {
       return entrywise(u, [&](Eigen::Index i) { return fraction * u.coeff(i); });
     };
-    if constexpr (kSecondOrder) {
-      desired = tick_.acceleration_to(next);
-    } else if (!failed(result.status)) {
-      fraction = followable_fraction(loop, limits(), correction_(now), tick_.joints.q, field);
-      if (fraction < Scalar(1)) desired = slowed(field);
-    }
-    const bool several = has_lower_levels(loop.kinematics);
-    if constexpr (kHasLevels) {
-      if (several && !failed(result.status) && !one_acceleration) {
-        result.status = worse(result.status, tick_.evaluate_middle(loop, correction_(ahead(now, dt() / 2)), desired));
-        if (fraction < Scalar(1)) desired = slowed(desired);
+    if constexpr (!kSecondOrder) {
+      if (!failed(result.status)) {
+        fraction = followable_fraction(loop, limits(), correction_(now), tick_.joints.q, field);
+        if (fraction < Scalar(1)) desired = slowed(field);
       }
     }
-    if (!several && !one_acceleration) {
+    const bool evaluates = !kSecondOrder && !failed(result.status) &&
+                           (has_lower_levels(loop.kinematics) || one_acceleration || is_nearly_at_rest(result));
+    if constexpr (!kSecondOrder) {
+      if (evaluates) {
+        result.status = worse(result.status, tick_.evaluate_middle(loop, correction_(ahead(now, dt() / 2)), desired));
+        if (fraction < Scalar(1)) desired = slowed(desired);
+        if constexpr (kGuarded) {
+          if (guard_.moves_away()) desired += null_space_motion(jacobian_in_metres(loop.kinematics), guard_.away());
+        }
+      }
+    }
+    if (!evaluates && !(kSecondOrder && one_acceleration)) {
       // With the Jacobian in the middle of the tick, joints that compensate for saturated joints do not disturb the
       // tip.
       loop.arm.kinematics(tick_.middle_of(next.q), loop.kinematics);
@@ -286,12 +297,11 @@ class LimitedState {
     return limiter_.admits(tick_.joints, next, tick_.last);
   }
 
-  /// Null-space part of the motion away from shapes, in the middle of a tick that ends at the posture `end`.
-  template <typename Arm>
-  [[nodiscard]] JointVector null_space_motion_away(const Arm& arm, const JointVector& end) noexcept {
-    Kinematics<Space, N, Scalar> kinematics;
-    arm.kinematics(tick_.middle_of(end), kinematics);
-    return null_space_motion(jacobian_in_metres(kinematics), guard_.away());
+  /// Whether a tick at velocity level is limited although the arm hardly moves and no direction is damped: secondary
+  /// motion presses joints against bounds. The mean velocity of an RK4 step is then of a motion that the bounds do not
+  /// admit, and would move the tip by the order of h² times the cube of this motion.
+  [[nodiscard]] bool is_nearly_at_rest(const Result& result) const noexcept {
+    return result.status == Status::kOk && largest_magnitude(tick_.joints.qd) * dt() < Scalar(1e-5);
   }
 
   TickState<kLevel, Space, N, Scalar> tick_;

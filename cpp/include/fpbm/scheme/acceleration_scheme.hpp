@@ -181,10 +181,10 @@ struct AccelerationScheme {
       const Vector<N, Scalar> whole = transpose_times(Jd, mu);
       const Vector<N, Scalar> force = entrywise(whole, [&](Eigen::Index i) { return alpha * whole.coeff(i); });
       Vector<N, Scalar> y = weights.root_transpose(force);  // α CᵀJdᵀμ, the first term of y.
-      const bool braked = status == Status::kDamped;
-      if (braked || null_space.template active<kLevel>()) {
-        Vector<N, Scalar> z = null_space.template at<kLevel>(state);
-        if (braked) z = entrywise(z, [&](Eigen::Index i) { return z.coeff(i) - gram.brake() * state.qd.coeff(i); });
+      constexpr bool kDamped = std::decay_t<decltype(solutions)>::kIsDamped;
+      if (kDamped || null_space.template active<kLevel>()) {
+        const Vector<N, Scalar> z = kDamped ? null_space.template velocity_part<kLevel>(state, gram.brake())
+                                            : null_space.template at<kLevel>(state);
         y = sum_of(y, weights.inverse_root(z));
       }
       const Vector<M, Scalar> even = entrywise(b, [&](Eigen::Index i) { return (Scalar(1) - alpha) * b.coeff(i); });
@@ -192,6 +192,10 @@ struct AccelerationScheme {
       const Vector<N, Pair<Scalar>> parts =
           solutions.motion(solutions.coefficients(side_by_side<M, 1, Scalar>(even, weighted)));
       y = second<N, 1, Scalar>(solutions.project(side_by_side<N, 1, Scalar>(y, y)));
+      if constexpr (kDamped) {
+        const Vector<N, Scalar> z = weights.inverse_root(null_space.position_part(state));
+        y = sum_of(y, second<N, 1, Scalar>(solutions.secondary(side_by_side<N, 1, Scalar>(z, z))));
+      }
       y = entrywise(y, [&](Eigen::Index i) { return y.coeff(i) + parts.coeff(i).second(); });
       return plus_first<N, Scalar>(weights.root(y), parts);
     });

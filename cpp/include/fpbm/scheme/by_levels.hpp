@@ -24,7 +24,8 @@ namespace fpbm {
 /// with b_k = S (xdd + k₁(xd − ẋ) + k₂(x ⊖ f(q))) − J̇_k qd for each task, or b_k = S (xd + k (x ⊖ f(q))) at velocity
 /// level, all rows in metres. In a tick with one acceleration, TickFeedback defines b_k and J_k. Directions of a level
 /// that are lost because of the posture or of higher levels are damped (DampedLevel). The null-space motion of `scheme`
-/// determines the motion that no task determines.
+/// determines the motion that no task determines: while directions of a lower level are damped, the posture-dependent
+/// part of z is projected on the null space of all levels (docs/singularities.md, Secondary motion).
 template <typename Scheme, typename Stack_>
 struct ByLevels {
   using Scalar = typename Stack_::Scalar;
@@ -50,8 +51,29 @@ struct ByLevels {
                                const Reference<Space, Scalar>& reference, const State<kDof, Scalar>& state,
                                JointVector& u, Scalar* sigma = nullptr) const noexcept {
     JointVector result;
+    bool damped = false;
+    Status status = resolve_levels(kinematics, reference, state, false, damped, result, sigma);
+    if (damped && !failed(status) && scheme.null_space.template active<Level::kVelocity>()) {
+      status = resolve_levels(kinematics, reference, state, true, damped, result, sigma);
+    }
+    if (failed(status)) return status;
+    if (!is_finite(result)) return Status::kNotFinite;
+    u = std::move(result);
+    return status;
+  }
+
+ private:
+  /// Resolves all levels. Sets `damped` if directions of a lower level are damped. apart: whether the lower levels are
+  /// resolved without the posture-dependent part of z, which is then projected on the null space of all levels and
+  /// multiplied by DampedLevel::fade() of each level. Otherwise, the damped pseudoinverse of a lower level would not
+  /// remove this part from the level.
+  [[nodiscard]] Status resolve_levels(const Kinematics<Space, kDof, Scalar>& kinematics,
+                                      const Reference<Space, Scalar>& reference, const State<kDof, Scalar>& state,
+                                      bool apart, bool& damped, JointVector& result, Scalar* sigma) const noexcept {
     LevelSpace<kDof, Scalar> space(state.q.size());
+    JointVector secondary;
     Status status = Status::kOk;
+    Scalar fade(1);
     each_level([&](auto k) noexcept {
       constexpr int kIndex = decltype(k)::value;
       const auto& level = std::get<kIndex>(kinematics.levels);
@@ -66,18 +88,31 @@ struct ByLevels {
       if constexpr (kIndex == 0) {
         result = filled<JointVector>(state.q.size());
         status = scheme.resolve_rows(r, xd, level.J, level.Jd, state, result, sigma);
+        if (apart) {
+          secondary = secondary_motion(level, state.q);
+          result -= secondary;
+        }
         if constexpr (Stack_::kLevels > 1) space.add(level.J);
       } else {
-        if (space.rank() < space.size()) result += added(level, r, result, space);
+        if (space.rank() < space.size()) result += added(level, r, result, space, fade, damped);
       }
     });
-    if (failed(status)) return status;
-    if (!is_finite(result)) return Status::kNotFinite;
-    u = std::move(result);
+    if (apart) result += fade * space.project(secondary);
     return status;
   }
 
- private:
+  /// Posture-dependent part of the null-space motion of the scheme: the motion at rest without a command.
+  template <typename LevelRows_>
+  [[nodiscard, gnu::cold, gnu::noinline]] JointVector secondary_motion(const LevelRows_& level,
+                                                                       const JointVector& q) const noexcept {
+    constexpr int M = Stack_::kRows[0];
+    const auto nothing = filled<Vector<M, Scalar>>(level.rows());
+    auto motion = filled<JointVector>(q.size());
+    const State<kDof, Scalar> at_rest{q, motion};
+    const Status status = scheme.resolve_rows(nothing, nothing, level.J, level.Jd, at_rest, motion);
+    return failed(status) ? filled<JointVector>(q.size()) : motion;
+  }
+
   template <typename F>
   static void each_level(F&& f) noexcept {
     each_level(f, std::make_index_sequence<Stack_::kLevels>{});
@@ -103,19 +138,22 @@ struct ByLevels {
   }
 
   /// Returns u_k − u_{k−1} of a lower level, and adds the level to the space. Returns zero if the rows are not finite.
-  /// r: b_k.
+  /// r: b_k. Multiplies `fade` by DampedLevel::fade(), and sets `damps` if directions are damped.
   template <int M>
   [[nodiscard]] JointVector added(const LevelRows<M, kDof, Scalar>& level, Vector<M, Scalar> r, const JointVector& u,
-                                  LevelSpace<kDof, Scalar>& space) const noexcept {
+                                  LevelSpace<kDof, Scalar>& space, Scalar& fade, bool& damps) const noexcept {
     r -= product(level.J, u);
     if (!r.allFinite()) return filled<JointVector>(u.size());
     const ScaledLevel<M, kDof, Scalar> scaled(level.J, r);
     DampedLevel<M, Scalar> damped(radius * radius);
-    return space.add(scaled.J, scaled.r, damped);
+    const JointVector y = space.add(scaled.J, scaled.r, damped);
+    fade *= damped.fade();
+    damps = damps || damped.damps();
+    return y;
   }
   /// added() for a posture of all joints: J Z has orthonormal columns.
   [[nodiscard]] JointVector added(const PostureRows<kDof, Scalar>& level, const JointVector& r, const JointVector& u,
-                                  LevelSpace<kDof, Scalar>& space) const noexcept {
+                                  LevelSpace<kDof, Scalar>& space, Scalar&, bool&) const noexcept {
     if (!r.allFinite()) return filled<JointVector>(u.size());
     JointVector y = u;
     for (Eigen::Index i = 0; i < r.size(); ++i) {

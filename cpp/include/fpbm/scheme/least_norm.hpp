@@ -42,16 +42,20 @@ template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weig
   if (failed(status)) return status;
 
   constexpr bool kForced = !std::is_same_v<Force, NoForce>;
-  const bool braked = kLevel == Level::kAcceleration && status == Status::kDamped;
   const Vector<N, Scalar> y = gram.solved([&](const auto& solutions) noexcept -> Vector<N, Scalar> {
-    if (!(kForced || braked || null_space.template active<kLevel>())) {
+    constexpr bool kDamped = std::decay_t<decltype(solutions)>::kIsDamped;
+    constexpr bool kBraked = kDamped && kLevel == Level::kAcceleration;
+    if (!(kForced || kBraked || null_space.template active<kLevel>())) {
       return solutions.motion(solutions.coefficients(v));
     }
-    Vector<N, Scalar> z = null_space.template at<kLevel>(state);
-    if (braked) z = entrywise(z, [&](Eigen::Index i) { return z.coeff(i) - gram.brake() * state.qd.coeff(i); });
+    const Vector<N, Scalar> z = kDamped ? null_space.template velocity_part<kLevel>(state, gram.brake())
+                                        : null_space.template at<kLevel>(state);
     Vector<N, Scalar> y0 = weights.inverse_root(z);
     if constexpr (kForced) y0 = sum_of(y0, weights.root_transpose(force(solutions)));
-    const Vector<N, Scalar> free = solutions.project(y0);
+    Vector<N, Scalar> free = solutions.project(y0);
+    if constexpr (kDamped) {
+      free = sum_of(free, solutions.secondary(weights.inverse_root(null_space.position_part(state))));
+    }
     const Vector<N, Scalar> done = solutions.motion(solutions.coefficients(v));
     return sum_of(free, done);
   });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/types.hpp"
@@ -104,6 +105,7 @@ class DampedGram {
   /// force(coefficients(b)) = (JW⁻¹Jᵀ + Δ)⁻¹b.
   template <bool kDamped>
   struct Solutions {
+    static constexpr bool kIsDamped = kDamped;
     const DampedGram& of;
 
     [[nodiscard]] Vector<M, Value> coefficients(const Vector<M, Value>& b) const noexcept {
@@ -118,6 +120,14 @@ class DampedGram {
         return entrywise(a, [&](Eigen::Index i) { return a.coeff(i) - taken.coeff(i); });
       }
       return of.factor_.project(a);
+    }
+    /// Projection of a on the null space of JC, times LostDirections::fade, which is zero in a singular posture. The
+    /// product is continuous, although the projection is not continuous in a singular posture (docs/singularities.md,
+    /// Secondary motion). The second projection removes the round-off error of the first, ε_machine ‖J‖/σ_min.
+    [[nodiscard]] Vector<N, Value> secondary(const Vector<N, Value>& a) const noexcept {
+      if (!(of.fade_ > Scalar(0))) return filled<Vector<N, Value>>(a.size());
+      const Vector<N, Value> projected = of.factor_.project(of.factor_.project(a));
+      return entrywise(a, [&](Eigen::Index i) { return Value(of.fade_) * projected.coeff(i); });
     }
     [[nodiscard]] Vector<N, Value> motion(const Vector<M, Value>& coefficients) const noexcept {
       if constexpr (kDamped) return product(of.rows_, coefficients);
@@ -173,6 +183,9 @@ class DampedGram {
     }
     const LostDirections<M, Scalar> lost(even, threshold);
     lost_ = lost.count;
+    // σ² has a round-off error of a few ε_machine ‖J‖². If σ² is not larger, the null space of JC is unknown.
+    const Scalar round_off = kRoundOff / (damping_.radius() * damping_.radius());
+    fade_ = lost.fade > round_off ? lost.fade : Scalar(0);
     if (!(lost_ > Scalar(0))) return undamped;
     Matrix<M, M, Value> gram;  // Lower triangle.
     gram.resize(m, m);
@@ -187,6 +200,10 @@ class DampedGram {
     return status == Status::kOk ? Status::kDamped : status;
   }
 
+  /// Round-off error of LostDirections::fade times radius². `fpbm_tests --gtest_filter='Spectra*secondary*'` prints
+  /// 4e-12 with 0, and 1e-13 with 4 to 64 ε_machine.
+  static constexpr auto kRoundOff = 16 * std::numeric_limits<Number<Scalar>>::epsilon();
+
   SingularDamping<Scalar> damping_;
   const Matrix<M, N, Scalar>& J_;
   Scalar length_;
@@ -194,6 +211,7 @@ class DampedGram {
   RowFactor<M, N, Value> factor_;  ///< Factorisation of DJC.
   Cholesky<M, Value> damped_;      ///< Factorisation of D(JW⁻¹Jᵀ)D + Δ, if Δ ≠ 0.
   Scalar lost_{0};                 ///< tr Δ/ε², about the number of lost directions.
+  Scalar fade_{1};                 ///< LostDirections::fade, or 0 if the null space of JC is not known.
 };
 
 }  // namespace fpbm

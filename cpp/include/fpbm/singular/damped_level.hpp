@@ -45,6 +45,8 @@ class DampedLevel {
     if (!(directions.count > Scalar(0))) return false;
     if (cholesky.factor(sum_of(gram, directions.delta)) != Status::kOk) return false;
     lost_ += directions.count;
+    fade_ = directions.fade;
+    damps_ = true;
     r = dependent ? cholesky.solve(transpose_times(L, r)) : transpose_times(L, cholesky.solve(r));
     return true;
   }
@@ -54,6 +56,12 @@ class DampedLevel {
 
   /// tr Δ/ε², about the number of lost directions, plus the number of dependent rows.
   [[nodiscard]] Scalar lost() const noexcept { return lost_; }
+
+  /// Whether a direction is damped, apart from dependent rows.
+  [[nodiscard]] bool damps() const noexcept { return damps_; }
+
+  /// LostDirections::fade of the damped directions.
+  [[nodiscard]] Scalar fade() const noexcept { return fade_; }
 
  private:
   /// ‖L⁻¹‖²_F.
@@ -97,6 +105,8 @@ class DampedLevel {
 
   Scalar epsilon_squared_;
   Scalar lost_{0};
+  Scalar fade_{1};
+  bool damps_ = false;
 };
 
 }  // namespace fpbm

@@ -12,8 +12,8 @@ namespace fpbm {
 /// Δ is smooth in q, and exactly zero while σ_min ≥ ε. ‖Jᵀ(JJᵀ + Δ)⁻¹‖ ≤ 1.17/ε. With weights W, scaled so that the
 /// largest diagonal entry of W⁻¹ is 1, ‖W⁻¹Jᵀ(JW⁻¹Jᵀ + Δ)⁻¹‖ ≤ 1.28 √cond(W)/ε.
 ///
-/// A lost direction becomes a direction of the null space. At acceleration level, −brake (tr Δ/ε²) qd is added to z, so
-/// that an arm with an unreachable target stops at the workspace boundary.
+/// Secondary motion that depends on the posture is projected on the null space without damping. At acceleration level,
+/// −brake (tr Δ/ε²) qd is added to z, so that an arm with an unreachable target stops at the workspace boundary.
 template <typename Scalar = double>
 class SingularDamping {
  public:

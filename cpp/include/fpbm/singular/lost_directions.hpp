@@ -16,7 +16,8 @@ namespace fpbm {
 /// 1.17/ε.
 template <int M, typename Scalar>
 struct LostDirections {
-  Scalar count{0};             ///< tr Δ/ε², about the number of lost directions.
+  Scalar count{0};  ///< tr Δ/ε², about the number of lost directions.
+  Scalar fade{1};  ///< Π φ(σᵢ/(kFade ε)), φ(s) = 1 − (1 − s²)³ for s < 1, otherwise 1. 0 in a singular posture.
   Matrix<M, M, Scalar> delta;  ///< Δ
 
   /// gram: G. Only the lower triangle is read.
@@ -35,10 +36,16 @@ struct LostDirections {
         subtract_multiple(delta.data() + j * gram.rows(), -weight * epsilon_squared * u(j), u.data(), gram.rows());
       }
       count += weight;
+      const Scalar near = Scalar(1) - (Scalar(1) - gap) / (kFade * kFade);
+      if (near > Scalar(0)) fade *= near < Scalar(1) ? Scalar(1) - near * near * near : Scalar(0);
     }
   }
 
  private:
+  /// Fraction of ε below which secondary motion fades. With 1, the arm of test_unreachable_target_stops_and_returns in
+  /// Python stays near its outstretched posture, and returns by a recovery; with 0.1 and less, it returns by itself.
+  static constexpr Scalar kFade = Scalar(0.1);
+
   /// uᵀGu
   [[nodiscard]] static Scalar quadratic_form(const Matrix<M, M, Scalar>& gram, const Vector<M, Scalar>& u) noexcept {
     Scalar sum(0);
