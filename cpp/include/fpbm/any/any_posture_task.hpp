@@ -31,6 +31,8 @@ class AnyPostureTask {
   }
 
   [[nodiscard]] int rows() const noexcept { return count_; }
+  /// Index of the joint of a row.
+  [[nodiscard]] int joint(int row) const noexcept { return joints_(row); }
 
   /// Throws std::invalid_argument if a joint does not exist in the robot, or is listed twice.
   template <typename Robot>

@@ -37,20 +37,20 @@ class LowerLevels {
   /// Call at the start of a tick. kinematics: in the state at the start. error: errors of the tasks at the start.
   /// Replaces the references of stopped tasks, and begins the correction again without their errors and integrals.
   template <typename References, typename Kinematics, typename Correction>
-  void hold(References& references, const Kinematics& kinematics, Vector<Space::kRows, Scalar> error,
+  [[nodiscard]] bool hold(References& references, const Kinematics& kinematics, const Vector<Space::kRows, Scalar>& error,
             Correction& correction) noexcept {
     watch(references.stages[0].x, kinematics, error);
-    if (!any_stopped_) return;
+    if (!any_stopped_) return false;
     for (auto& stage : references.stages) {
       Space::each([&](auto space, auto i, int row) noexcept {
         constexpr std::size_t kIndex = decltype(i)::value;
         if (!stopped_[kIndex]) return;
         correction.reset_integrals(row, decltype(space)::kRows);
-        std::get<kIndex>(stage.x) = std::get<kIndex>(kinematics.tip);
-        for (int j = row; j < row + decltype(space)::kRows; ++j) error(j) = stage.xd(j) = stage.xdd(j) = Scalar(0);
+        std::get<kIndex>(stage.x) = std::get<kIndex>(held_[kIndex] ? point_ : kinematics.tip);
+        for (int j = row; j < row + decltype(space)::kRows; ++j) stage.xd(j) = stage.xdd(j) = Scalar(0);
       });
     }
-    correction.begin(error, kinematics.length);
+    return true;
   }
 
   /// Sets the scale of each level with a stopped task to 0.
@@ -72,6 +72,7 @@ class LowerLevels {
   /// Resets the detection: all tasks follow their references.
   void release() noexcept {
     stopped_.fill(false);
+    held_.fill(false);
     any_stopped_ = false;
     shapes_.reset();
     least_.fill(std::numeric_limits<Scalar>::infinity());
@@ -101,12 +102,12 @@ class LowerLevels {
       return release();
     }
     time_ += dt_;
-    if (time_ > stall_time_) end_window();
+    if (time_ > stall_time_) end_window(kinematics.tip);
   }
 
   /// Stops tasks at the end of a window. In the first window, every task makes progress, since the errors of earlier
   /// windows are infinite.
-  void end_window() noexcept {
+  void end_window(const Point& tip) noexcept {
     bool progress = false;
     for (std::size_t i = 0; i < kTasks; ++i) {
       const bool approaches = peak_[i] < (Scalar(1) - kApproach) * least_[i];
@@ -116,10 +117,16 @@ class LowerLevels {
     }
     peak_.fill(Scalar(0));
     time_ = Scalar(0);
-    for (std::size_t i = Space::kFirst; i < kTasks && !progress; ++i) {
-      stopped_[i] = stopped_[i] || counts_[i];
-      any_stopped_ = any_stopped_ || stopped_[i];
-    }
+    Space::each([&](auto, auto i, int) noexcept {
+      constexpr std::size_t kIndex = decltype(i)::value;
+      if (kIndex < Space::kFirst) return;
+      if (stopped_[kIndex] && !held_[kIndex]) {
+        held_[kIndex] = true;
+        std::get<kIndex>(point_) = std::get<kIndex>(tip);
+      }
+      stopped_[kIndex] = stopped_[kIndex] || (counts_[kIndex] && !progress);
+      any_stopped_ = any_stopped_ || stopped_[kIndex];
+    });
   }
 
   static constexpr std::size_t kTasks = std::tuple_size_v<Point>;
@@ -137,11 +144,13 @@ class LowerLevels {
   Scalar time_;  ///< Since the start of the window [s].
   bool any_stopped_;
   std::array<bool, kTasks> stopped_;
+  std::array<bool, kTasks> held_;  ///< Stopped tasks that are at rest.
   std::array<bool, kTasks> counts_{};  ///< Tasks that are enabled, not stopped, and not at their targets.
   std::array<Scalar, kTasks> peak_;    ///< Largest error of each task in the window.
   std::array<Scalar, kTasks> least_;   ///< Smallest peak_ of earlier windows.
   ShapeWatch<Scalar> shapes_;
   Point target_ = Space::template origin<Scalar>();
+  Point point_ = Space::template origin<Scalar>();  ///< Points of held tasks.
 };
 
 template <typename... Levels, typename Scalar>

@@ -19,6 +19,9 @@ struct PostureTask {
   TaskGains<Scalar> gains;
   std::array<int, M> joints = first_joints();  ///< Indices of the joints, from 0, each once.
 
+  /// Index of the joint of a row.
+  [[nodiscard]] int joint(int row) const noexcept { return joints[static_cast<std::size_t>(row)]; }
+
   template <typename Robot>
   void bind(const Robot& robot) const {
     require_different("joints", joints, robot.dof());
