@@ -55,10 +55,10 @@ class Correction {
     });
   }
 
-  /// Reduces the error of a row of a posture task. first: whether the task belongs to the first level.
-  void reduce(int row, Scalar error, bool first) noexcept {
-    if (error == error_.coeff(row)) return;
-    excess_(row) = error_.coeff(row) - error;
+  /// Sets the part of a row of a posture task's error that the feedback does not use. first: whether the task belongs to
+  /// the first level.
+  void reduce(int row, Scalar excess, bool first) noexcept {
+    excess_(row) = excess;
     moved_ = true;
     far_ = far_ || first;
   }

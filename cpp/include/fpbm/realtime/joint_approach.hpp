@@ -10,63 +10,82 @@
 #include "fpbm/core/joint_space.hpp"
 #include "fpbm/core/level.hpp"
 #include "fpbm/core/parts.hpp"
+#include "fpbm/limits/limits.hpp"
 #include "fpbm/task/stack.hpp"
 #include "fpbm/task/task_gains.hpp"
 
 namespace fpbm {
 
-/// Error of one joint that the feedback of a posture task uses (docs/tasks.md, Posture tasks).
+/// Reduces the error of a joint that the feedback of a posture task uses, so that the bounds admit the approach
+/// (docs/tasks.md, Posture tasks).
 ///
-/// Let λ be the rate of the error dynamics: the slowest root of λ² − k₁λ + k₂ = 0, k₁/2 if the roots are complex, or k
-/// at velocity level. A joint that approaches its target with the velocity v = λe decelerates with λ²e. If λ²e exceeds
-/// the deceleration a, the error is reduced, so that the joint follows v² = 2a (e − a/2λ²) within its bound on velocity.
+/// Let λ be the rate of the feedback: the slow root of λ² − k₁λ + k₂ = 0, k₁/2 if the roots are complex, or k at
+/// velocity level. The feedback moves a joint with the error e at the velocity v = λe, and decelerates with λ²e. Beyond
+/// the error d/λ², where d is the deceleration of the joint, v = λe would need a larger deceleration. There, the joint
+/// follows v² = 2d (e − d/2λ²), up to its bound on velocity.
 template <Level kLevel, typename Scalar>
 struct JointApproach {
   TaskGains<Scalar> gains;
   Scalar velocity;      ///< Bound on velocity.
-  Scalar acceleration;  ///< Bound on acceleration.
+  Scalar deceleration;  ///< d
   Scalar jerk;          ///< Bound on jerk.
 
-  [[nodiscard]] Scalar operator()(Scalar error) const noexcept {
-    const Scalar size = std::abs(error);
-    // Most errors are small. λ² ≤ k₂ and λ ≥ k₂/k₁.
-    const Scalar square = kLevel == Level::kVelocity ? gains.k2 * gains.k2 : gains.k2;
-    const Scalar most = kLevel == Level::kVelocity ? velocity : gains.k1 * velocity;
-    const Scalar rate = kLevel == Level::kVelocity ? gains.k2 : gains.k1;
-    if (square * size <= acceleration && gains.k2 * size <= most && rate * size <= kRamp * jerk) return error;
-    return std::copysign(reduced(size), error);
+  /// Fraction of an error of this size that the feedback uses.
+  [[nodiscard]] Scalar fraction(Scalar size) const noexcept {
+    // Most errors are small. At acceleration level, λ² ≤ k₂ and λ ≥ k₂/k₁.
+    const Scalar rate = kSecondOrder ? gains.k1 : gains.k2;
+    const Scalar square = kSecondOrder ? gains.k2 : gains.k2 * gains.k2;
+    const bool small = square * size <= deceleration && gains.k2 * size <= (kSecondOrder ? rate : Scalar(1)) * velocity &&
+                       rate * size <= kRamp * jerk;
+    return small ? Scalar(1) : reduced(size) / size;
   }
 
  private:
-  /// The error of magnitude `size` is reduced to this magnitude.
+  static constexpr bool kSecondOrder = kLevel == Level::kAcceleration;
+
+  /// Error that the feedback uses instead of an error of this size.
   [[nodiscard, gnu::cold, gnu::noinline]] Scalar reduced(Scalar size) const noexcept {
-    const auto [k1, k2] = std::pair(gains.k1, gains.k2);
+    const Scalar k1 = gains.k1;
+    const Scalar k2 = gains.k2;
     Scalar lambda = k2;
-    if constexpr (kLevel == Level::kAcceleration) {
+    if constexpr (kSecondOrder) {
       const Scalar discriminant = k1 * k1 - Scalar(4) * k2;
       lambda = discriminant > Scalar(0) ? Scalar(2) * k2 / (k1 + std::sqrt(discriminant)) : k1 / Scalar(2);
     }
-    const Scalar deceleration = std::min(kFraction * acceleration, kRamp * lambda * jerk);
-    const Scalar linear = deceleration / (lambda * lambda);  // Error below which v = λe.
-    const auto used = [&](Scalar v, Scalar a) noexcept {
-      return kLevel == Level::kVelocity ? v / k2 : (k1 * v - a) / k2;
-    };
+    if (!(lambda > Scalar(0))) return size;
+    const Scalar d = std::min(deceleration, kRamp * lambda * jerk);
+    const Scalar linear = d / (lambda * lambda);
+    // Error with which the feedback moves the joint at the velocity v, and decelerates with a.
+    const auto used = [&](Scalar v, Scalar a) noexcept { return kSecondOrder ? (k1 * v - a) / k2 : v / k2; };
     Scalar result = size;
     if (size > linear) {
-      const Scalar v = std::sqrt(Scalar(2) * deceleration * (size - linear / Scalar(2)));
-      result = linear * (used(v, deceleration) / used(lambda * linear, deceleration));
+      const Scalar v = std::sqrt(Scalar(2) * d * (size - linear / Scalar(2)));
+      result = linear * (used(v, d) / used(lambda * linear, d));
     }
-    return k1 > Scalar(0) || kLevel == Level::kVelocity ? std::min(result, used(velocity, Scalar(0))) : result;
+    return std::min(result, used(velocity, Scalar(0)));
   }
 
-  static constexpr Scalar kFraction = Scalar(0.8);
+  /// The deceleration begins within the time 1/4λ at the bound on jerk.
   static constexpr Scalar kRamp = Scalar(0.25);
 };
 
-/// Reduces the errors of the posture tasks of a stack, joint by joint (JointApproach). correction: after begin().
-template <Level kLevel, typename Space, typename Arm, typename Limits, typename Correction>
+/// Deceleration with which joint i approaches the target of a posture task. At velocity level, the limiter changes
+/// velocities that are a tick of full acceleration away: with a bound on jerk, this change has a smaller acceleration.
+template <Level kLevel, int N, typename Scalar>
+[[nodiscard]] Scalar approach_deceleration(const Limits<kLevel, N, Scalar>& limits, int i) noexcept {
+  constexpr Scalar kFraction = Scalar(0.8);  // The remaining acceleration corrects deviations from v.
+  const Scalar most = limits.bounds().acceleration.coeff(i);
+  if (kLevel == Level::kAcceleration || !limits.bounds_jerk(i)) return kFraction * most;
+  return kFraction * std::min(most, limits.jerk_limited(i).change(most * limits.tick()));
+}
+
+/// Reduces the errors of the posture tasks of a stack by the smallest fraction of all joints (JointApproach), so that
+/// the joints move along a straight line and arrive together. correction: after begin().
+/// displacement(joint): of a joint since begin() [rad] or [m].
+template <Level kLevel, typename Space, typename Arm, typename Limits, typename Correction, typename Displacement>
 void approach_postures([[maybe_unused]] const Arm& arm, [[maybe_unused]] const Limits& limits,
-                       [[maybe_unused]] Correction& correction) noexcept {
+                       [[maybe_unused]] Correction& correction,
+                       [[maybe_unused]] const Displacement& displacement) noexcept {
   if constexpr (kIsProduct<Space>) {
     using Scalar = typename Arm::Scalar;
     const auto& bounds = limits.bounds();
@@ -74,11 +93,20 @@ void approach_postures([[maybe_unused]] const Arm& arm, [[maybe_unused]] const L
       if constexpr (kIsJointSpace<decltype(space)>) {
         constexpr std::size_t kIndex = decltype(i)::value;
         const auto& task = std::get<kIndex>(arm.stack().tasks());
+        const auto error = [&](int r) noexcept {
+          return correction.error().coeff(row + r) - displacement(task.joint(r));
+        };
+        Scalar fraction(1);
         for (int r = 0; r < rows_of(task); ++r) {
           const int joint = task.joint(r);
           const JointApproach<kLevel, Scalar> approach{task.gains, bounds.velocity.coeff(joint),
-                                                       bounds.acceleration.coeff(joint), bounds.jerk.coeff(joint)};
-          correction.reduce(row + r, approach(correction.error().coeff(row + r)), kIndex < Space::kFirst);
+                                                       approach_deceleration(limits, joint), bounds.jerk.coeff(joint)};
+          const Scalar joint_fraction = approach.fraction(std::abs(error(r)));
+          if (!(fraction <= joint_fraction)) fraction = joint_fraction;
+        }
+        if (fraction == Scalar(1)) return;
+        for (int r = 0; r < rows_of(task); ++r) {
+          correction.reduce(row + r, (Scalar(1) - fraction) * error(r), kIndex < Space::kFirst);
         }
       }
     });

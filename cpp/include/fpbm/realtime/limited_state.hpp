@@ -12,6 +12,7 @@
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/realtime/correction.hpp"
 #include "fpbm/realtime/followable_fraction.hpp"
+#include "fpbm/realtime/joint_approach.hpp"
 #include "fpbm/realtime/progress.hpp"
 #include "fpbm/realtime/tick.hpp"
 #include "fpbm/realtime/tick_state.hpp"
@@ -194,7 +195,13 @@ class LimitedState {
     if constexpr (kSecondOrder) {
       desired = tick_.acceleration_to(next);
     } else if (!failed(result.status)) {
-      fraction = followable_fraction(loop, limits(), correction_(now), tick_.joints.q, field);
+      const auto reference_after = [&](Scalar seconds) noexcept {
+        auto correction = correction_;
+        approach_postures<kLevel, Space>(loop.arm, limits(), correction,
+                                         [&](int joint) { return seconds * field.coeff(joint); });
+        return correction(now);
+      };
+      fraction = followable_fraction(loop, limits(), reference_after, tick_.joints.q, field);
       if (fraction < Scalar(1)) desired = slowed(field);
     }
     const bool several = has_lower_levels(loop.kinematics);

@@ -261,7 +261,7 @@ class Tracker {
   }
   void begin_correction(const Vector<Space::kRows, Scalar>& error, Scalar length) noexcept {
     limited_.correction().begin(error, length);
-    approach_postures<kLevel, Space>(arm_, limited_.limits(), limited_.correction());
+    approach_postures<kLevel, Space>(arm_, limited_.limits(), limited_.correction(), [](int) { return Scalar(0); });
   }
 
   /// Motion of the scheme after update(). σ is from the factorisation of the scheme, or from a factorisation of JJᵀ if
