@@ -109,7 +109,7 @@ inline constexpr std::size_t kTask = 3 * kLevel;
 
 struct Motion {
   double speed = 0.0;            ///< Largest joint velocity after 80 s [rad/s].
-  std::array<double, 2> away{};  ///< Increase of the error of each lower level since it stopped for the last time.
+  std::array<double, 2> away{};  ///< Distance of each lower level from the point where it stopped.
 };
 
 template <typename Kind>
@@ -145,27 +145,25 @@ template <typename Kind>
   Correction<Kind::value, Space> correction(options);
   Kinematics<Space, N> kinematics;
   Motion found;
-  std::array<double, 2> at_stop{};
   std::array<bool, 2> stopped{};
   const auto ticks = static_cast<int>(std::lround(82.0 / h));
   for (int i = 0; i < ticks; ++i) {
     tasks.points(tracker.state().q, kinematics);
     auto references = TickReferences<Space>::of([&](double) { return target; }, h);
-    watch.hold(references, kinematics, task_error(kinematics, target.x), correction);
+    (void)watch.hold(references, kinematics, task_error(kinematics, target.x), correction);
     const auto tick = tracker.tick(target);
     auto seen = tick;
     seen.scales.fill(1.0);
     watch.report(seen);
     watch.end_tick(!failed(tick.status), tick.qd, 0.0, kinematics.length);
-    for (std::size_t j = 0; j < 2; ++j) {
-      const auto row = static_cast<Eigen::Index>(j == 0 ? 12 + kMaxDof : 2 * (12 + kMaxDof));
-      const double error = tick.error.segment(row, 6).norm();
-      const bool stops = seen.scales[1 + j] == 0.0;
-      if (stops && !stopped[j]) at_stop[j] = error;
-      stopped[j] = stops;
-      found.away[j] = stops ? error - at_stop[j] : 0.0;
-    }
     if (i * h >= 80.0) found.speed = std::max(found.speed, tick.qd.cwiseAbs().maxCoeff());
+    if (i + 1 < ticks) continue;
+    const auto held = task_error(kinematics, references.stages[0].x);
+    for (std::size_t j = 0; j < 2; ++j) {
+      stopped[j] = seen.scales[1 + j] == 0.0;
+      const auto row = static_cast<Eigen::Index>((1 + j) * (12 + kMaxDof));
+      found.away[j] = stopped[j] ? held.segment(row, 6).norm() : 0.0;
+    }
   }
   if (std::getenv("FPBM_PRINT") != nullptr) {
     std::printf("%s %d: rest %d jerk %d far %d keep %d: speed %.1e away %.1e %.1e stopped %d %d\n", subject.name.c_str(), k, rests, jerk,

@@ -41,15 +41,17 @@ class LowerLevels {
             Correction& correction) noexcept {
     watch(references.stages[0].x, kinematics, error);
     if (!any_stopped_) return false;
-    for (auto& stage : references.stages) {
-      Space::each([&](auto space, auto i, int row) noexcept {
-        constexpr std::size_t kIndex = decltype(i)::value;
-        if (!stopped_[kIndex]) return;
-        correction.reset_integrals(row, decltype(space)::kRows);
-        std::get<kIndex>(stage.x) = std::get<kIndex>(held_[kIndex] ? point_ : kinematics.tip);
-        for (int j = row; j < row + decltype(space)::kRows; ++j) stage.xd(j) = stage.xdd(j) = Scalar(0);
-      });
-    }
+    Space::each([&](auto space, auto i, int row) noexcept {
+      constexpr std::size_t kIndex = decltype(i)::value;
+      using Part = decltype(space);
+      if (!stopped_[kIndex]) return;
+      hold_at_rest<kIndex, Part>(std::get<kIndex>(kinematics.tip), kinematics.length);
+      correction.reset_integrals(row, Part::kRows);
+      for (auto& stage : references.stages) {
+        std::get<kIndex>(stage.x) = std::get<kIndex>(point_);
+        for (int j = row; j < row + Part::kRows; ++j) stage.xd(j) = stage.xdd(j) = Scalar(0);
+      }
+    });
     return true;
   }
 
@@ -102,12 +104,12 @@ class LowerLevels {
       return release();
     }
     time_ += dt_;
-    if (time_ > stall_time_) end_window(kinematics.tip);
+    if (time_ > stall_time_) end_window();
   }
 
   /// Stops tasks at the end of a window. In the first window, every task makes progress, since the errors of earlier
   /// windows are infinite.
-  void end_window(const Point& tip) noexcept {
+  void end_window() noexcept {
     bool progress = false;
     for (std::size_t i = 0; i < kTasks; ++i) {
       const bool approaches = peak_[i] < (Scalar(1) - kApproach) * least_[i];
@@ -117,23 +119,29 @@ class LowerLevels {
     }
     peak_.fill(Scalar(0));
     time_ = Scalar(0);
-    Space::each([&](auto, auto i, int) noexcept {
-      constexpr std::size_t kIndex = decltype(i)::value;
-      if (kIndex < Space::kFirst) return;
-      if (stopped_[kIndex] && !held_[kIndex]) {
-        held_[kIndex] = true;
-        std::get<kIndex>(point_) = std::get<kIndex>(tip);
-      }
-      stopped_[kIndex] = stopped_[kIndex] || (counts_[kIndex] && !progress);
-      any_stopped_ = any_stopped_ || stopped_[kIndex];
-    });
+    for (std::size_t i = Space::kFirst; i < kTasks; ++i) {
+      held_[i] = stopped_[i];
+      stopped_[i] = stopped_[i] || (counts_[i] && !progress);
+      any_stopped_ = any_stopped_ || stopped_[i];
+    }
+  }
+
+  /// Until a stopped task is at rest, or until the end of the next window, its current point is its reference: the task
+  /// brakes. Then the task holds its point.
+  template <std::size_t kIndex, typename Part, typename PartPoint>
+  void hold_at_rest(const PartPoint& tip, Scalar length) noexcept {
+    if (held_[kIndex]) return;
+    const Scalar moved = TaskDistance<Part, Scalar>::between(tip, std::get<kIndex>(point_), length);
+    held_[kIndex] = moved <= kRest * dt_;
+    std::get<kIndex>(point_) = tip;
   }
 
   static constexpr std::size_t kTasks = std::tuple_size_v<Point>;
   /// Smallest displacement of a target or of shapes that counts, and smallest progress that counts, as
   /// TaskDistance::kProgress.
   static constexpr Scalar kMoved = Scalar(2e-3);
-  static constexpr Scalar kRest = Scalar(1e-3);  ///< Largest joint velocity at rest [rad/s], as in the tests of stacks.
+  /// Largest joint velocity [rad/s] or task velocity [lengths/s, rad/s] at rest, as in the tests of stacks.
+  static constexpr Scalar kRest = Scalar(1e-3);
   static constexpr Scalar kSmall = Scalar(1e-4);  ///< As in StallDetector: 0.1 mm for an arm of 1 m.
   /// Relative decrease of the error that counts as progress, as for a crawling arm (StallDetector). An error that
   /// decreases by 1/16 in each window of 2 s is 1 % of its start after 143 s.
@@ -144,13 +152,13 @@ class LowerLevels {
   Scalar time_;  ///< Since the start of the window [s].
   bool any_stopped_;
   std::array<bool, kTasks> stopped_;
-  std::array<bool, kTasks> held_;  ///< Stopped tasks that are at rest.
+  std::array<bool, kTasks> held_;  ///< Stopped tasks that hold their points.
   std::array<bool, kTasks> counts_{};  ///< Tasks that are enabled, not stopped, and not at their targets.
   std::array<Scalar, kTasks> peak_;    ///< Largest error of each task in the window.
   std::array<Scalar, kTasks> least_;   ///< Smallest peak_ of earlier windows.
   ShapeWatch<Scalar> shapes_;
   Point target_ = Space::template origin<Scalar>();
-  Point point_ = Space::template origin<Scalar>();  ///< Points of held tasks.
+  Point point_ = Space::template origin<Scalar>();  ///< Points of stopped tasks.
 };
 
 template <typename... Levels, typename Scalar>
