@@ -129,8 +129,7 @@ template <typename Kind>
   options.keep_first_level = random.uniform(0.0, 1.0) < 0.3;
   const AnyStack stack = stack_of(kind, index, subject.tree);
   auto tracker = stack_tracker(robot, stack, scheme_of(kind, q0, rests ? 4.0 : 0.0),
-                               State<N>{q0, Vector<N>::Zero(q0.size())},
-                               options, Limits<Kind::value, N>(bounds, h));
+                               State<N>{q0, Vector<N>::Zero(q0.size())}, options, Limits<Kind::value, N>(bounds, h));
   auto target = decltype(tracker)::Target::hold(tracker.tip());
   const auto displace = [&](auto& point, double size) {
     point.at.p += size * random.uniform(3, -1.0, 1.0).normalized();
@@ -166,8 +165,9 @@ template <typename Kind>
     }
   }
   if (std::getenv("FPBM_PRINT") != nullptr) {
-    std::printf("%s %d: rest %d jerk %d far %d keep %d: speed %.1e away %.1e %.1e stopped %d %d\n", subject.name.c_str(), k, rests, jerk,
-                far, options.keep_first_level, found.speed, found.away[0], found.away[1], stopped[0], stopped[1]);
+    std::printf("%s %d: rest %d jerk %d far %d keep %d: speed %.1e away %.1e %.1e stopped %d %d\n",
+                subject.name.c_str(), k, rests, jerk, far, options.keep_first_level, found.speed, found.away[0],
+                found.away[1], stopped[0], stopped[1]);
   }
   return found;
 }
@@ -187,9 +187,11 @@ void expect_stops(Kind kind) {
       dragged += most > 1e-4 ? 1 : 0;
       away = std::max(away, most);
     }
-    std::printf("%s, %s level, %d motions: %d faster than 1e-3 rad/s after 80 s, %d farther from a target than where the task stopped, by %.1e\n",
-                subject.name.c_str(), Kind::value == Level::kAcceleration ? "acceleration" : "velocity", motions(),
-                moving, dragged, away);
+    std::printf(
+        "%s, %s level, %d motions: %d faster than 1e-3 rad/s after 80 s, %d farther from a target than where the task "
+        "stopped, by %.1e\n",
+        subject.name.c_str(), Kind::value == Level::kAcceleration ? "acceleration" : "velocity", motions(), moving,
+        dragged, away);
     EXPECT_EQ(moving, 0);
     EXPECT_EQ(dragged, 0);
     ++index;

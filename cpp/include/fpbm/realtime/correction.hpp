@@ -55,8 +55,8 @@ class Correction {
     });
   }
 
-  /// Sets the part of a row of a posture task's error that the feedback does not use. first: whether the task belongs to
-  /// the first level.
+  /// Sets the part of a row of a posture task's error that the feedback does not use. first: whether the task belongs
+  /// to the first level.
   void reduce(int row, Scalar excess, bool first) noexcept {
     excess_(row) = excess;
     moved_ = true;

@@ -35,8 +35,8 @@ struct JointApproach {
     // Most errors are small. At acceleration level, λ² ≤ k₂ and λ ≥ k₂/k₁.
     const Scalar rate = kSecondOrder ? gains.k1 : gains.k2;
     const Scalar square = kSecondOrder ? gains.k2 : gains.k2 * gains.k2;
-    const bool small = square * size <= deceleration && gains.k2 * size <= (kSecondOrder ? rate : Scalar(1)) * velocity &&
-                       rate * size <= kRamp * jerk;
+    const bool small = square * size <= deceleration &&
+                       gains.k2 * size <= (kSecondOrder ? rate : Scalar(1)) * velocity && rate * size <= kRamp * jerk;
     return small ? Scalar(1) : reduced(size) / size;
   }
 

@@ -37,8 +37,8 @@ class LowerLevels {
   /// Call at the start of a tick. kinematics: in the state at the start. error: errors of the tasks at the start.
   /// Replaces the references of stopped tasks, and begins the correction again without their errors and integrals.
   template <typename References, typename Kinematics, typename Correction>
-  [[nodiscard]] bool hold(References& references, const Kinematics& kinematics, const Vector<Space::kRows, Scalar>& error,
-            Correction& correction) noexcept {
+  [[nodiscard]] bool hold(References& references, const Kinematics& kinematics,
+                          const Vector<Space::kRows, Scalar>& error, Correction& correction) noexcept {
     watch(references.stages[0].x, kinematics, error);
     if (!any_stopped_) return false;
     Space::each([&](auto space, auto i, int row) noexcept {
@@ -152,7 +152,7 @@ class LowerLevels {
   Scalar time_;  ///< Since the start of the window [s].
   bool any_stopped_;
   std::array<bool, kTasks> stopped_;
-  std::array<bool, kTasks> held_;  ///< Stopped tasks that hold their points.
+  std::array<bool, kTasks> held_;      ///< Stopped tasks that hold their points.
   std::array<bool, kTasks> counts_{};  ///< Tasks that are enabled, not stopped, and not at their targets.
   std::array<Scalar, kTasks> peak_;    ///< Largest error of each task in the window.
   std::array<Scalar, kTasks> least_;   ///< Smallest peak_ of earlier windows.
