@@ -11,6 +11,7 @@ struct NoLowerLevels {
   [[nodiscard]] static bool hold(const References&, const Kinematics&, const Error&, const Correction&) noexcept {
     return false;
   }
+  [[nodiscard]] static constexpr bool rests() noexcept { return false; }
   template <typename Tick>
   static void report(const Tick&) noexcept {}
   template <typename JointVector, typename Scalar>

@@ -154,6 +154,7 @@ class Tracker {
         if constexpr (Loop::kSecondOrder) next.qd = column(x, 1);
       }
     }
+    if (lower_levels_.rests() && !failed(result.status)) next = limited_.tick().slowed();
     limited_.finish_tick(loop, now, rows, next, field, one_acceleration, result);
     lower_levels_.report(result);
     report_lower_levels(result);
