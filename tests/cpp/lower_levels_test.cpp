@@ -31,7 +31,7 @@ using Velocity = std::integral_constant<Level, Level::kVelocity>;
 /// Motions of each robot and level. FPBM_MOTIONS=170 gives the numbers of docs/tasks.md, and FPBM_TICK=0.001 the ticks.
 [[nodiscard]] int motions() {
   const char* given = std::getenv("FPBM_MOTIONS");
-  return given != nullptr ? std::atoi(given) : trials(17);
+  return given != nullptr ? std::atoi(given) : trials(6);
 }
 [[nodiscard]] double tick_length() {
   const char* given = std::getenv("FPBM_TICK");
