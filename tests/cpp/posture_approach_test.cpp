@@ -24,10 +24,10 @@ namespace {
 
 constexpr int N = Eigen::Dynamic;
 
-/// Motions of each robot, level and tick. FPBM_MOTIONS=100 gives the numbers of docs/tasks.md.
+/// Motions of each robot, level and tick. FPBM_MOTIONS=3 gives the numbers of docs/tasks.md.
 [[nodiscard]] int motions() {
   const char* given = std::getenv("FPBM_MOTIONS");
-  return given != nullptr ? std::atoi(given) : trials(4);
+  return given != nullptr ? std::atoi(given) : trials(3);
 }
 
 /// Least time from rest to rest over the distance d within the bounds V, A and J on velocity, acceleration and jerk:
