@@ -139,6 +139,7 @@
 #include "fpbm/realtime/correction.hpp"
 #include "fpbm/realtime/followable_fraction.hpp"
 #include "fpbm/realtime/held_level.hpp"
+#include "fpbm/realtime/joint_approach.hpp"
 #include "fpbm/realtime/limited_state.hpp"
 #include "fpbm/realtime/lower_levels.hpp"
 #include "fpbm/realtime/measured_limiter.hpp"

@@ -41,4 +41,10 @@ struct JointSpace {
   }
 };
 
+/// Whether a task space is a JointSpace.
+template <typename Space>
+inline constexpr bool kIsJointSpace = false;
+template <int M>
+inline constexpr bool kIsJointSpace<JointSpace<M>> = true;
+
 }  // namespace fpbm

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "fpbm/core/joint_space.hpp"
 #include "fpbm/core/level.hpp"
 #include "fpbm/core/parts.hpp"
 #include "fpbm/core/validation.hpp"
@@ -43,6 +44,7 @@ class Correction {
       constexpr int kLengths = Part::kRows - Part::kTurns;
       const Scalar* const from = error.data() + row;
       Scalar* const to = excess_.data() + row;
+      if constexpr (kIsJointSpace<Part>) return;  // Joint by joint: reduce().
       bool far = false;
       if constexpr (kLengths > 0) far = bring_near<kLengths>(from, error_bound_ * length, to);
       if constexpr (Part::kTurns > 0) {
@@ -51,6 +53,14 @@ class Correction {
       moved_ = moved_ || far;
       far_ = far_ || (first && far);
     });
+  }
+
+  /// Sets the part of a row of a posture task's error that the feedback does not use. first: whether the task belongs
+  /// to the first level.
+  void reduce(int row, Scalar excess, bool first) noexcept {
+    excess_(row) = excess;
+    moved_ = true;
+    far_ = far_ || first;
   }
 
   /// Whether a target of the first level is beyond error_bound.

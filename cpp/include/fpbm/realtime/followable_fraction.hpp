@@ -9,10 +9,10 @@ namespace fpbm {
 
 /// Fraction of a velocity field that the joints can follow. The fraction is below 1 if the whole field requires
 /// accelerations above the joints' bounds: joints that follow the whole field would oscillate. field: velocities of the
-/// scheme at q [rad/s].
-template <typename Loop, typename Target, int N, typename Scalar>
+/// scheme at q [rad/s]. reference_after(seconds): corrected reference at the posture q + seconds · field.
+template <typename Loop, typename ReferenceAfter, int N, typename Scalar>
 [[nodiscard]] Scalar followable_fraction(Loop& loop, const Limits<Level::kVelocity, N, Scalar>& limits,
-                                         const Target& reference, const Vector<N, Scalar>& q,
+                                         ReferenceAfter&& reference_after, const Vector<N, Scalar>& q,
                                          const Vector<N, Scalar>& field) noexcept {
   const auto& bounds = limits.bounds();
   // The derivative of the field in the direction of the field is the acceleration of joints that follow the field. At a
@@ -25,7 +25,7 @@ template <typename Loop, typename Target, int N, typename Scalar>
   }
   const Vector<N, Scalar> x = q + ahead * field;
   Vector<N, Scalar> later = x;
-  if (failed(loop.evaluate(reference, x, later))) return Scalar(1);
+  if (failed(loop.evaluate(reference_after(ahead), x, later))) return Scalar(1);
   Scalar square = Scalar(1);
   for (Eigen::Index i = 0; i < field.size(); ++i) {
     const Scalar change = std::abs(later(i) - field(i)) / ahead;

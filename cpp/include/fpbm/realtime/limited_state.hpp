@@ -12,6 +12,7 @@
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/realtime/correction.hpp"
 #include "fpbm/realtime/followable_fraction.hpp"
+#include "fpbm/realtime/joint_approach.hpp"
 #include "fpbm/realtime/progress.hpp"
 #include "fpbm/realtime/tick.hpp"
 #include "fpbm/realtime/tick_state.hpp"
@@ -203,7 +204,13 @@ class LimitedState {
     };
     if constexpr (!kSecondOrder) {
       if (!failed(result.status)) {
-        fraction = followable_fraction(loop, limits(), correction_(now), tick_.joints.q, field);
+        const auto reference_after = [&](Scalar seconds) noexcept {
+          auto correction = correction_;
+          approach_postures<kLevel, Space>(loop.arm, limits(), correction,
+                                           [&](int joint) { return seconds * field.coeff(joint); });
+          return correction(now);
+        };
+        fraction = followable_fraction(loop, limits(), reference_after, tick_.joints.q, field);
         if (fraction < Scalar(1)) desired = slowed(field);
       }
     }

@@ -23,7 +23,8 @@ namespace fpbm {
 /// The largest error of each task in a window of stall_time is compared with the largest errors in earlier windows. A
 /// task makes progress if its error is below 15/16 of the errors of all earlier windows. A task of a lower level stops
 /// if it makes no progress, its error exceeds 0.0001, no target has moved by 0.002 (TaskDistance), and no task makes
-/// progress of more than 0.002. The reference of a stopped task is its current point at zero velocity.
+/// progress of more than 0.002. A stopped task brakes: its reference is its current point at zero velocity, until the
+/// task is at rest or the next window ends. Then the task holds this point.
 ///
 /// All tasks follow their references again if a target of any level or a shape near the arm moves, and after a tick
 /// that does not follow the references.
@@ -35,23 +36,30 @@ class LowerLevels {
   LowerLevels(Scalar stall_time, Scalar dt) noexcept : stall_time_(stall_time), dt_(dt) { release(); }
 
   /// Call at the start of a tick. kinematics: in the state at the start. error: errors of the tasks at the start.
-  /// Replaces the references of stopped tasks, and begins the correction again without their errors and integrals.
+  /// Replaces the references of stopped tasks, and resets their integrals. Returns whether any task has stopped, so
+  /// that the correction must begin again with the errors of the new references.
   template <typename References, typename Kinematics, typename Correction>
-  void hold(References& references, const Kinematics& kinematics, Vector<Space::kRows, Scalar> error,
-            Correction& correction) noexcept {
+  [[nodiscard]] bool hold(References& references, const Kinematics& kinematics,
+                          const Vector<Space::kRows, Scalar>& error, Correction& correction) noexcept {
     watch(references.stages[0].x, kinematics, error);
-    if (!any_stopped_) return;
-    for (auto& stage : references.stages) {
-      Space::each([&](auto space, auto i, int row) noexcept {
-        constexpr std::size_t kIndex = decltype(i)::value;
-        if (!stopped_[kIndex]) return;
-        correction.reset_integrals(row, decltype(space)::kRows);
-        std::get<kIndex>(stage.x) = std::get<kIndex>(kinematics.tip);
-        for (int j = row; j < row + decltype(space)::kRows; ++j) error(j) = stage.xd(j) = stage.xdd(j) = Scalar(0);
-      });
-    }
-    correction.begin(error, kinematics.length);
+    if (!any_stopped_) return false;
+    Space::each([&](auto space, auto i, int row) noexcept {
+      constexpr std::size_t kIndex = decltype(i)::value;
+      using Part = decltype(space);
+      if (!stopped_[kIndex]) return;
+      hold_at_rest<kIndex, Part>(std::get<kIndex>(kinematics.tip), kinematics.length);
+      correction.reset_integrals(row, Part::kRows);
+      for (auto& stage : references.stages) {
+        std::get<kIndex>(stage.x) = std::get<kIndex>(point_);
+        for (int j = row; j < row + Part::kRows; ++j) stage.xd(j) = stage.xdd(j) = Scalar(0);
+      }
+    });
+    return true;
   }
+
+  /// Whether all joints should brake: tasks have stopped, and no task has approached its target for kQuiet windows.
+  /// Otherwise, null-space motion could continue for minutes.
+  [[nodiscard]] bool rests() const noexcept { return quiet_ >= kQuiet; }
 
   /// Sets the scale of each level with a stopped task to 0.
   template <typename... Levels, int N>
@@ -72,17 +80,20 @@ class LowerLevels {
   /// Resets the detection: all tasks follow their references.
   void release() noexcept {
     stopped_.fill(false);
+    held_.fill(false);
     any_stopped_ = false;
     shapes_.reset();
     least_.fill(std::numeric_limits<Scalar>::infinity());
     peak_.fill(Scalar(0));
     time_ = Scalar(0);
+    quiet_ = 0;
   }
 
  private:
   template <typename Kinematics>
   void watch(const Point& target, const Kinematics& kinematics, const Vector<Space::kRows, Scalar>& errors) noexcept {
     bool moved = false;
+    Scalar displacements(0);
     Space::each([&](auto space, auto i, int row) noexcept {
       constexpr std::size_t kIndex = decltype(i)::value;
       using Part = decltype(space);
@@ -90,6 +101,7 @@ class LowerLevels {
       const Scalar displacement =
           Distance::between(std::get<kIndex>(target), std::get<kIndex>(target_), kinematics.length);
       moved = moved || displacement > kMoved;
+      displacements += displacement;
       Vector<Part::kRows, Scalar> part;
       for (int j = 0; j < Part::kRows; ++j) part(j) = errors.coeff(row + j);
       const Scalar error = Distance::norm(part, kinematics.length);
@@ -100,6 +112,8 @@ class LowerLevels {
       target_ = target;
       return release();
     }
+    if (displacements != displacements_) quiet_ = 0;
+    displacements_ = displacements;
     time_ += dt_;
     if (time_ > stall_time_) end_window();
   }
@@ -108,40 +122,64 @@ class LowerLevels {
   /// windows are infinite.
   void end_window() noexcept {
     bool progress = false;
+    bool settled = any_stopped_;
     for (std::size_t i = 0; i < kTasks; ++i) {
       const bool approaches = peak_[i] < (Scalar(1) - kApproach) * least_[i];
       progress = progress || (approaches && peak_[i] < least_[i] - kMoved);
+      settled = settled && !(counts_[i] && approaches);
       counts_[i] = counts_[i] && !approaches;
       least_[i] = std::min(least_[i], peak_[i]);
     }
     peak_.fill(Scalar(0));
     time_ = Scalar(0);
-    for (std::size_t i = Space::kFirst; i < kTasks && !progress; ++i) {
-      stopped_[i] = stopped_[i] || counts_[i];
+    for (std::size_t i = Space::kFirst; i < kTasks; ++i) {
+      const bool stops = counts_[i] && !stopped_[i] && !progress;
+      settled = settled && !stops;
+      held_[i] = stopped_[i];
+      stopped_[i] = stopped_[i] || stops;
       any_stopped_ = any_stopped_ || stopped_[i];
     }
+    quiet_ = settled ? quiet_ + 1 : 0;
+  }
+
+  /// Until a stopped task is at rest, or until the end of the next window, its current point is its reference: the task
+  /// brakes. Then the task holds its point.
+  template <std::size_t kIndex, typename Part, typename PartPoint>
+  void hold_at_rest(const PartPoint& tip, Scalar length) noexcept {
+    if (held_[kIndex]) return;
+    const Scalar moved = TaskDistance<Part, Scalar>::between(tip, std::get<kIndex>(point_), length);
+    held_[kIndex] = moved <= kRest * dt_;
+    std::get<kIndex>(point_) = tip;
   }
 
   static constexpr std::size_t kTasks = std::tuple_size_v<Point>;
   /// Smallest displacement of a target or of shapes that counts, and smallest progress that counts, as
   /// TaskDistance::kProgress.
   static constexpr Scalar kMoved = Scalar(2e-3);
-  static constexpr Scalar kRest = Scalar(1e-3);  ///< Largest joint velocity at rest [rad/s], as in the tests of stacks.
+  /// Largest joint velocity [rad/s] or task velocity [lengths/s, rad/s] at rest, as in the tests of stacks.
+  static constexpr Scalar kRest = Scalar(1e-3);
   static constexpr Scalar kSmall = Scalar(1e-4);  ///< As in StallDetector: 0.1 mm for an arm of 1 m.
   /// Relative decrease of the error that counts as progress, as for a crawling arm (StallDetector). An error that
   /// decreases by 1/16 in each window of 2 s is 1 % of its start after 143 s.
   static constexpr Scalar kApproach = Scalar(1) / Scalar(16);
 
+  /// Windows in which a rest posture moves the joints in the null space, 20 s by default. The value is a choice.
+  static constexpr int kQuiet = 10;
+
   Scalar stall_time_;
   Scalar dt_;
   Scalar time_;  ///< Since the start of the window [s].
   bool any_stopped_;
+  int quiet_;                         ///< Windows since the last stop or approach of a task.
+  Scalar displacements_ = Scalar(0);  ///< Sum of the displacements of the targets from target_.
   std::array<bool, kTasks> stopped_;
+  std::array<bool, kTasks> held_;      ///< Stopped tasks that hold their points.
   std::array<bool, kTasks> counts_{};  ///< Tasks that are enabled, not stopped, and not at their targets.
   std::array<Scalar, kTasks> peak_;    ///< Largest error of each task in the window.
   std::array<Scalar, kTasks> least_;   ///< Smallest peak_ of earlier windows.
   ShapeWatch<Scalar> shapes_;
   Point target_ = Space::template origin<Scalar>();
+  Point point_ = Space::template origin<Scalar>();  ///< Points of stopped tasks.
 };
 
 template <typename... Levels, typename Scalar>

@@ -8,7 +8,10 @@ struct NoLowerLevels {
   NoLowerLevels(Scalar, Scalar) noexcept {}
 
   template <typename References, typename Kinematics, typename Error, typename Correction>
-  static void hold(const References&, const Kinematics&, const Error&, const Correction&) noexcept {}
+  [[nodiscard]] static bool hold(const References&, const Kinematics&, const Error&, const Correction&) noexcept {
+    return false;
+  }
+  [[nodiscard]] static constexpr bool rests() noexcept { return false; }
   template <typename Tick>
   static void report(const Tick&) noexcept {}
   template <typename JointVector, typename Scalar>

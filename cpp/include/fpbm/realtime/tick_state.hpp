@@ -23,6 +23,13 @@ struct TickState {
 
   /// State after a tick with the constant motion u.
   [[nodiscard]] JointState after(const JointVector& u) const noexcept { return motion.after(joints, u); }
+  /// State after a tick in which all velocities decrease in proportion, in 0.1 s to 1/e.
+  [[nodiscard, gnu::cold, gnu::noinline]] JointState slowed() const noexcept {
+    return after(entrywise(joints.qd, [&](Eigen::Index i) {
+      const Scalar rate = Scalar(-10) * joints.qd.coeff(i);
+      return kLevel == Level::kAcceleration ? rate : joints.qd.coeff(i) + motion.dt * rate;
+    }));
+  }
   /// Mean motion of a tick to the state `next`.
   [[nodiscard]] JointVector motion_to(const JointState& next) const noexcept { return motion.between(joints, next); }
   /// Mean acceleration of a tick to the state `next`.

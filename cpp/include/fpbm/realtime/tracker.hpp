@@ -3,6 +3,7 @@
 #include <array>
 
 #include "fpbm/realtime/held_level.hpp"
+#include "fpbm/realtime/joint_approach.hpp"
 #include "fpbm/realtime/limited_state.hpp"
 #include "fpbm/realtime/measured_limiter.hpp"
 #include "fpbm/realtime/measured_tick.hpp"
@@ -134,7 +135,9 @@ class Tracker {
       if (limited_.keeps_stopping()) held_level_.hold(references, loop.kinematics.tip, loop.kinematics.length);
     }
     measure_error(loop.kinematics, references.stages[0], result);
-    lower_levels_.hold(references, loop.kinematics, result.error, limited_.correction());
+    if (lower_levels_.hold(references, loop.kinematics, result.error, limited_.correction())) {
+      begin_correction(task_error(loop.kinematics, references.stages[0].x), correction.length());
+    }
     const Target now = references.stages[0];
     if (correction.active()) {
       for (Target& stage : references.stages) stage = correction(stage);
@@ -162,6 +165,7 @@ class Tracker {
         if constexpr (Loop::kSecondOrder) next.qd = column(x, 1);
       }
     }
+    if (lower_levels_.rests() && !failed(result.status)) next = limited_.tick().slowed();
     limited_.finish_tick(loop, now, rows, next, field, one_acceleration, result);
     lower_levels_.report(result);
     report_lower_levels(result);
@@ -175,7 +179,7 @@ class Tracker {
   /// the tick, not corrected. `middle` is the corrected reference in the middle of the tick. `next` is the state after
   /// the step. `at_start` is the motion at the start: joint velocities, or accelerations at acceleration level.
   bool begin(const Vector<Space::kRows, Scalar>& error, Scalar length) noexcept {
-    limited_.correction().begin(error, length);
+    begin_correction(error, length);
     return limited_.correction().active();
   }
   [[nodiscard]] Target corrected(const Target& reference) const noexcept { return limited_.correction()(reference); }
@@ -269,7 +273,11 @@ class Tracker {
 
   void measure_error(const Kinematics<Space, N, Scalar>& kinematics, const Target& reference, Result& result) noexcept {
     result.error = task_error(kinematics, reference.x);
-    limited_.correction().begin(result.error, kinematics.length);
+    begin_correction(result.error, kinematics.length);
+  }
+  void begin_correction(const Vector<Space::kRows, Scalar>& error, Scalar length) noexcept {
+    limited_.correction().begin(error, length);
+    approach_postures<kLevel, Space>(arm_, limited_.limits(), limited_.correction(), [](int) { return Scalar(0); });
   }
 
   /// Motion of the scheme after update(). σ is from the factorisation of the scheme, or from a factorisation of JJᵀ if
