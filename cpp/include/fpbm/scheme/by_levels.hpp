@@ -45,10 +45,11 @@ struct ByLevels {
   void require_dof(Eigen::Index dof) const { scheme.require_dof(dof); }
 
   /// Joint accelerations [rad/s²], or velocities [rad/s]. A level whose references are not finite is ignored. If the
-  /// first level fails, u does not change. sigma: for the first level, as in AccelerationScheme::resolve().
+  /// first level fails, u does not change. sigma: for the first level, as in AccelerationScheme::resolve(). first: set to
+  /// the motion of the first level alone, unless null.
   [[nodiscard]] Status resolve(const Kinematics<Space, kDof, Scalar>& kinematics,
                                const Reference<Space, Scalar>& reference, const State<kDof, Scalar>& state,
-                               JointVector& u, Scalar* sigma = nullptr) const noexcept {
+                               JointVector& u, Scalar* sigma = nullptr, JointVector* first = nullptr) const noexcept {
     JointVector result;
     LevelSpace<kDof, Scalar> space(state.q.size());
     Status status = Status::kOk;
@@ -66,6 +67,7 @@ struct ByLevels {
       if constexpr (kIndex == 0) {
         result = filled<JointVector>(state.q.size());
         status = scheme.resolve_rows(r, xd, level.J, level.Jd, state, result, sigma);
+        if (first != nullptr) *first = result;
         if constexpr (Stack_::kLevels > 1) space.add(level.J);
       } else {
         if (space.rank() < space.size()) result += added(level, r, result, space);
