@@ -52,7 +52,9 @@ template <int M, int N, typename Scalar, int P>
 [[nodiscard]] NullSpaceSaturation<M, N, Scalar, P> saturation_of(const Matrix<M, N, Scalar>& J,
                                                                  const Vector<N, Scalar>& unit,
                                                                  const Rows<N, P, Scalar>& rows) noexcept {
-  return {J, unit, rows};
+  NullSpaceSaturation<M, N, Scalar, P> saturation(J, unit, rows);
+  saturation.limit_compensation();
+  return saturation;
 }
 
 /// Resolves the levels below the first level. A single task has no lower levels.

@@ -36,7 +36,9 @@ class SaturationByLevel {
         unit_(unit),
         rows_(rows),
         above_(space_of(levels.first(), unit)),
-        first_(first_saturation(levels.first(), above_, unit, rows)) {}
+        first_(first_saturation(levels.first(), above_, unit, rows)) {
+    first_.limit_compensation();
+  }
 
   /// Resolves the first level. rest: motion within the bounds from which the level starts.
   [[nodiscard]] Result operator()(const Box<N, Scalar>& box, const JointVector& rest,
@@ -63,6 +65,7 @@ class SaturationByLevel {
         result.u = goal;
       } else {
         NullSpaceSaturation<Eigen::Dynamic, N, Scalar, P> saturation(space, unit_, rows_);
+        saturation.limit_compensation();
         const SaturatedMotion<N, Scalar> found = saturation(box, result.u, goal);
         result.scales[k] = found.u.allFinite() ? found.scale : Scalar(0);
         if (found.u.allFinite()) result.u = found.u;

@@ -153,7 +153,7 @@ class Tracker {
     }
     limited_.finish_tick(loop, now, rows, next, field, one_acceleration, result);
     lower_levels_.report(result);
-    report_lower_levels(result);
+    report_levels(loop.kinematics, now.x, result);
     lower_levels_.end_tick(!limited_.stopping() && !failed(result.status), limited_.state().qd,
                            Scalar(guard().near_distance_sum()), correction.length());
     return result;
@@ -196,7 +196,7 @@ class Tracker {
     measure_error(loop.kinematics, reference, result);
     resolve(loop, limited_.correction()(reference), dx, result);
     result.qdd = last_command_ = limit_measured(loop, measured_, limited_, measured, last_command_, result);
-    report_lower_levels(result);
+    report_levels(loop.kinematics, reference.x, result);
     return result;
   }
 
