@@ -14,12 +14,12 @@
 #include "fpbm/realtime/stack_tracker.hpp"
 #include "support/random.hpp"
 
-/// Random stacks with constant targets come to rest: after 60 s, no acceleration exceeds 1e-3 of its bound.
+/// Random stacks with constant targets come to rest: from 60 s to 62 s, no acceleration exceeds 1e-3 of its bound.
 namespace fpbm::test::stack_rest_laws {
 namespace {
 
 constexpr int X = Eigen::Dynamic;
-constexpr double kDuration = 60.0;  ///< [s]
+constexpr double kDuration = 62.0;  ///< [s]
 constexpr double kAtRest = 1e-3;    ///< Largest acceleration at rest, as a fraction of its bound.
 
 /// Number of motions. FPBM_MOTIONS sets another number, FPBM_FIRST the first motion.
@@ -175,7 +175,7 @@ template <Level kLevel>
 template <Level kLevel>
 void expect_rest() {
   const int first = number("FPBM_FIRST", 0);
-  const int all = number("FPBM_MOTIONS", trials(200));
+  const int all = number("FPBM_MOTIONS", trials(100));
   int moving = 0;
   double worst = 0.0;
   for (int k = first; k < first + all; ++k) {
@@ -211,7 +211,7 @@ void expect_rest_near_pi() {
   int at_pi = 0;
   int moving = 0;
   int wrong = 0;
-  const int all = number("FPBM_MOTIONS", trials(200));
+  const int all = number("FPBM_MOTIONS", trials(48));
   for (int k = 0; k < all; ++k) {
     const auto& [kind, selected] = tasks[static_cast<std::size_t>(k % 4)];
     const Robot<X> robot(presets[static_cast<std::size_t>(k / 4 % 3)]());
@@ -223,12 +223,12 @@ void expect_rest_near_pi() {
     const AnyFrameTask task(kind, LinkFrame<>(Robot<X>::kTip), gains, selected, chance(random, 0.3));
     const AnyLevel empty{AnyFrameTask(), AnyFrameTask(), AnyPostureTask()};
     const AnyStack stack(AnyLevel{task, AnyFrameTask(), AnyPostureTask()}, empty, empty, empty);
-    auto tracker = tracker_of<kLevel>(robot, stack, bounds, q0, 1e-3);
+    auto tracker = tracker_of<kLevel>(robot, stack, bounds, q0, 4e-3);
     auto x = tracker.tip();
     Vector<6> turn = Vector<6>::Zero();
     turn.tail<3>() = random.uniform(2.8, 3.14) * Vector<3>(random.uniform(3, -1.0, 1.0)).normalized();
     std::get<0>(x).at = Pose::displace<double>(std::get<0>(x).at, turn);
-    const auto rest = follow(tracker, Reference<AnyStack::Space>::hold(x), bounds.acceleration, 1e-3, 20.0);
+    const auto rest = follow(tracker, Reference<AnyStack::Space>::hold(x), bounds.acceleration, 4e-3, 20.0);
     Kinematics<AnyStack::Space, X> kinematics;
     tracker.arm().kinematics(tracker.state().q, kinematics);
     const Vector<6> error = Pose::difference<double>(std::get<0>(x).at, std::get<0>(rest.tip).at);
