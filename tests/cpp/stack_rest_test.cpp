@@ -14,7 +14,7 @@
 #include "fpbm/realtime/stack_tracker.hpp"
 #include "support/random.hpp"
 
-/// Random stacks with constant targets come to rest: from 60 s to 62 s, no acceleration exceeds 1e-3 of its bound.
+/// Random stacks with constant targets stop: from 60 s to 62 s, no acceleration exceeds 1e-3 of its bound.
 namespace fpbm::test::stack_rest_laws {
 namespace {
 
@@ -198,7 +198,7 @@ TEST(StackRest, follows_constant_targets_by_velocity) {
 }
 
 /// A task with one or two rotation rows, whose target is rotated by nearly π: the rotation vector of the error may
-/// reach π, where its sign changes. The arm comes to rest, and the status is not kOk unless the target is reached.
+/// reach π, where its sign changes. The arm stops, and the status is not kOk unless the target is reached.
 template <Level kLevel>
 void expect_rest_near_pi() {
   const std::array presets{presets::ur5e, presets::panda, presets::iiwa14};
