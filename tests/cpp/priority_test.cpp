@@ -15,8 +15,8 @@
 #include "support/random.hpp"
 
 /// The motion J₁ u of the first level of a stack does not depend on the lower levels, also while limits are active. At
-/// acceleration level, this holds for every tick. At velocity level, it holds for the limiter: one factor of a tick slows
-/// all levels if the joints cannot follow the velocity field (followable_fraction()).
+/// acceleration level, this holds for every tick. At velocity level, it holds for the limiter: one factor of a tick
+/// slows all levels if the joints cannot follow the velocity field (followable_fraction()).
 namespace fpbm::test::priority_laws {
 namespace {
 
@@ -33,7 +33,7 @@ struct Differences {
   int ticks = 0;
   int limited = 0;
   double motion = 0.0;  ///< Largest change of J₁ u by lower levels, relative to ‖J₁ A‖, A the bounds of the joints.
-  double scale = 0.0;   ///< Largest change of the scale of the first level.
+  double scale = 0.0;  ///< Largest change of the scale of the first level.
 };
 
 [[nodiscard]] Vector<X> start_posture(const std::string& name) {
@@ -128,7 +128,8 @@ void expect_the_same_first_level() {
     const Matrix<2, 7> second = random.uniform(2, 7, -1.0, 1.0);
     const Matrix<2, 7> third = random.uniform(2, 7, -1.0, 1.0);
     const Limiter<kLevel, 7> limiter(limits, trial % 4 == 3 ? 0.5 : 0.0);
-    const Vector<7> q = bounds.lower + Vector<7>(random.uniform(7, 0.15, 0.85)).cwiseProduct(bounds.upper - bounds.lower);
+    const Vector<7> q =
+        bounds.lower + Vector<7>(random.uniform(7, 0.15, 0.85)).cwiseProduct(bounds.upper - bounds.lower);
     const State<7> state{q, Vector<7>(0.05 * random.uniform(7, -1.0, 1.0))};
     const Vector<7> last = Vector<7>(random.uniform(7, -0.5, 0.5)).cwiseProduct(bounds.acceleration);
     const double tick = kLevel == Level::kVelocity ? kTick : 1.0;
@@ -141,7 +142,8 @@ void expect_the_same_first_level() {
     levels.set_first_motion(own);
     const Vector<7> desired = own + null_space_motion(only_first(levels), motion());
     Rows<7, 2> rows{random.uniform(7, 2, -1.0, 1.0), {}, trial % 3};
-    for (int k = 0; k < 2; ++k) rows.b(k) = random.uniform(0.1, 1.0) * std::abs(rows.g.col(k).dot(desired)) + 0.1 * tick;
+    for (int k = 0; k < 2; ++k)
+      rows.b(k) = random.uniform(0.1, 1.0) * std::abs(rows.g.col(k).dot(desired)) + 0.1 * tick;
     const auto all = limiter.motion(levels, state, desired, last, rows);
     const auto alone = limiter.motion(only_first(levels), state, own, last, rows);
     worst = std::max(worst, (first * (all.u - alone.u)).norm() / (first * (tick * bounds.acceleration)).norm());

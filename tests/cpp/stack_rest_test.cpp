@@ -46,9 +46,8 @@ struct Case {
 
 [[nodiscard]] AnyFrameTask frame_task(Random& random, int dof, const TaskGains<>& gains) {
   const int frame = chance(random, 0.4) ? Robot<X>::kTip : 1 + index(random, dof);
-  const auto kind =
-      std::array{FrameCoordinates::kPosition, FrameCoordinates::kOrientation, FrameCoordinates::kPose,
-                 FrameCoordinates::kAxis}[static_cast<std::size_t>(index(random, 4))];
+  const auto kind = std::array{FrameCoordinates::kPosition, FrameCoordinates::kOrientation, FrameCoordinates::kPose,
+                               FrameCoordinates::kAxis}[static_cast<std::size_t>(index(random, 4))];
   AnyFrameTask::Selection selected{true, true, true, true, true, true};
   if (chance(random, 0.5)) {
     for (bool& row : selected) row = chance(random, 0.5);
@@ -218,8 +217,8 @@ void expect_rest_near_pi() {
     Random random(static_cast<unsigned>(k));
     JointLimits<X> bounds = robot.limits();
     const Vector<X> lower = bounds.lower.cwiseMax(-2.8);
-    const Vector<X> q0 = lower + Vector<X>(random.uniform(robot.dof(), 0.25, 0.75))
-                                     .cwiseProduct(bounds.upper.cwiseMin(2.8) - lower);
+    const Vector<X> q0 =
+        lower + Vector<X>(random.uniform(robot.dof(), 0.25, 0.75)).cwiseProduct(bounds.upper.cwiseMin(2.8) - lower);
     const AnyFrameTask task(kind, LinkFrame<>(Robot<X>::kTip), gains, selected, chance(random, 0.3));
     const AnyLevel empty{AnyFrameTask(), AnyFrameTask(), AnyPostureTask()};
     const AnyStack stack(AnyLevel{task, AnyFrameTask(), AnyPostureTask()}, empty, empty, empty);
@@ -243,7 +242,8 @@ void expect_rest_near_pi() {
                   rest.acceleration, error.tail<3>().norm(), selected_error, message(rest.status));
     }
   }
-  std::printf("%d of %d tasks near pi at rest, %d move, %d are wrongly reported as executed\n", at_pi, all, moving, wrong);
+  std::printf("%d of %d tasks near pi at rest, %d move, %d are wrongly reported as executed\n", at_pi, all, moving,
+              wrong);
   EXPECT_EQ(moving, 0);
   EXPECT_EQ(wrong, 0);
 }

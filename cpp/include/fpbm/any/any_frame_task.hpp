@@ -37,7 +37,7 @@ struct FrameSpace {
   struct Point {
     Transform<Scalar> at;
     bool is_axis = false;
-    bool is_empty = false;  ///< For a task without rows, which has no error and no displacement.
+    bool is_empty = false;        ///< For a task without rows, which has no error and no displacement.
     bool has_free_turns = false;  ///< Whether one or two of the three rotations are rows.
   };
 

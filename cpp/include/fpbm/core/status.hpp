@@ -33,8 +33,7 @@ enum class Status : unsigned char {
     case Status::kOk: return "the whole task is executed";
     case Status::kCoarse: return "the steps are too long: they cause a discretisation error of the tip";
     case Status::kDamped: return "the posture is nearly singular: motion in the singular directions is damped";
-    case Status::kSlowed:
-      return "joint limits or free rotations near π scale the task, or a lower level has stopped";
+    case Status::kSlowed: return "joint limits or free rotations near π scale the task, or a lower level has stopped";
     case Status::kBlocked: return "self-collision, obstacles or task bounds limit the task";
     case Status::kRecovering:
       return "the arm made no progress toward its target: it moves to a posture from which the target is reachable";

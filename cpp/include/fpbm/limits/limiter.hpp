@@ -182,9 +182,9 @@ class Limiter {
     return u + null_space_motion(only_first(tasks), JointVector(r - u));
   }
 
-  /// bounded() with a reserve. The first level is resolved within the whole limits, with a braking motion in its null
-  /// space. The lower levels are resolved within the limits minus the reserve, widened to include the motion of the
-  /// first level.
+  /// bounded() with a reserve. If the own motion of the first level exceeds the limits minus the reserve, the first
+  /// level is resolved within the whole limits, with a braking motion in its null space. The lower levels are resolved
+  /// within the limits minus the reserve, widened to include the motion of the first level.
   template <typename Tasks, int P>
   [[nodiscard]] Result<Tasks> with_reserve(const Tasks& tasks, const JointState& state, const JointVector& desired,
                                            const JointVector& last, const Rows<N, P, Scalar>& rows,
@@ -194,9 +194,12 @@ class Limiter {
     Box<N, Scalar> lower = jerk ? lower_limits_.box_in_time(state) : lower_limits_.box(state, last);
     lower = {whole.nearest(lower.lower), whole.nearest(lower.upper)};
     auto saturation = saturation_of(tasks, unit_, rows);
-    const JointVector rest = rows.near(brake_in_proportion(limits_, state, whole), whole);
-    const JointVector own = braking_in_null_space(tasks, first_motion(tasks, desired), rest);
-    Result<Tasks> found = resolve_first(saturation, tasks, state, whole, rows, own);
+    const JointVector& own = first_motion(tasks, desired);
+    Result<Tasks> found = with_scale(tasks, own, Scalar(1));
+    if (!lower.contains(own)) {
+      const JointVector rest = rows.near(brake_in_proportion(limits_, state, whole), whole);
+      found = resolve_first(saturation, tasks, state, whole, rows, braking_in_null_space(tasks, own, rest));
+    }
     const JointVector first = found.u;
     lower = {lower.lower.cwiseMin(first), lower.upper.cwiseMax(first)};
     resolve_lower(saturation, lower, desired, found);

@@ -52,8 +52,12 @@ class SaturationByLevel {
 
   /// Resolves the lower levels, starting from the motion of the first level. J_k u of a higher level does not change.
   void resolve_lower(const Box<N, Scalar>& box, const JointVector& desired, Result& result) const noexcept {
-    LevelSpace<N, Scalar> space = above_;
     bool whole = result.scale == Scalar(1);
+    if (whole && box.contains(desired) && rows_.admit(desired)) {
+      result.u = desired;
+      return;
+    }
+    LevelSpace<N, Scalar> space = above_;
     levels_.each_lower([&](std::size_t k, const auto& rows) noexcept {
       if (space.rank() == space.size()) return;  // The higher levels determine the motion.
       const JointVector goal =

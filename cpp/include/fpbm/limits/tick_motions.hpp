@@ -53,8 +53,7 @@ template <Level kLevel, int N, typename Scalar>
   } else {
     const Scalar fraction = approach_fraction(limits, qd, first);
     const Scalar lower = std::min(fraction, approach_fraction(limits, qd, all));
-    const Vector<N, Scalar> to =
-        entrywise(qd, [&](Eigen::Index i) { return qd(i) + fraction * (first(i) - qd(i)); });
+    const Vector<N, Scalar> to = entrywise(qd, [&](Eigen::Index i) { return qd(i) + fraction * (first(i) - qd(i)); });
     return {to, entrywise(to, [&](Eigen::Index i) { return to(i) + lower * (all(i) - first(i)); })};
   }
 }

@@ -41,7 +41,8 @@ template <typename Space>
 inline constexpr bool kHasSlowedFraction<Space, std::void_t<typename Space::HasSlowedFraction>> = true;
 
 /// Sets the scale to 0 for each level that was left out because a reference is not finite, and multiplies the scale of
-/// a level by FrameSpace::slowed_fraction(). If a level is slowed or left out, the status is at least kSlowed. x: targets.
+/// a level by FrameSpace::slowed_fraction(). If a level is slowed or left out, the status is at least kSlowed. x:
+/// targets.
 template <typename... Levels, int N, typename Scalar>
 void report_levels(const Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics,
                    const typename StackSpace<Levels...>::template Point<Scalar>& x,

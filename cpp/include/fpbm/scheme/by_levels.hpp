@@ -45,8 +45,8 @@ struct ByLevels {
   void require_dof(Eigen::Index dof) const { scheme.require_dof(dof); }
 
   /// Joint accelerations [rad/s²], or velocities [rad/s]. A level whose references are not finite is ignored. If the
-  /// first level fails, u does not change. sigma: for the first level, as in AccelerationScheme::resolve(). first: set to
-  /// the motion of the first level alone, unless null.
+  /// first level fails, u does not change. sigma: for the first level, as in AccelerationScheme::resolve(). first: set
+  /// to the motion of the first level alone, unless null.
   [[nodiscard]] Status resolve(const Kinematics<Space, kDof, Scalar>& kinematics,
                                const Reference<Space, Scalar>& reference, const State<kDof, Scalar>& state,
                                JointVector& u, Scalar* sigma = nullptr, JointVector* first = nullptr) const noexcept {
