@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <utility>
@@ -18,17 +19,26 @@ namespace fpbm {
 /// Coordinates that a task controls: coordinates of a frame, or the position of the centre of mass, which has no frame.
 enum class FrameCoordinates { kPosition, kOrientation, kPose, kAxis, kCenterOfMass };
 
+/// Largest distance of a rotation from π [rad] at which FrameSpace::turn_fraction() reduces an error.
+template <typename Scalar>
+inline constexpr Scalar kTurnBand = Scalar(0.5);
+/// Selected rotation error [rad] above which a reduced error counts as slowed.
+template <typename Scalar>
+inline constexpr Scalar kSelectedError = Scalar(1e-4);
+
 /// Task space of any task of a frame: poses [m, rad], or directions, which are the z axes of poses. Linear rows are
 /// above angular rows, along the axes of the base frame.
 struct FrameSpace {
   static constexpr int kRows = 6;
   static constexpr int kTurns = 3;
+  using HasSlowedFraction = void;
 
   template <typename Scalar>
   struct Point {
     Transform<Scalar> at;
     bool is_axis = false;
-    bool is_empty = false;  ///< For a task without rows, which has no error and no displacement.
+    bool is_empty = false;        ///< For a task without rows, which has no error and no displacement.
+    bool has_free_turns = false;  ///< Whether one or two of the three rotations are rows.
   };
 
   template <typename Scalar>
@@ -36,11 +46,17 @@ struct FrameSpace {
     return {};
   }
 
-  /// Pose::difference(), or for directions Direction::difference() with zeros in the linear rows.
+  /// Pose::difference(), or for directions Direction::difference() with zeros in the linear rows. If y has free
+  /// rotations, the rotation vector is multiplied by turn_fraction().
   template <typename Scalar>
   [[nodiscard]] static Vector<6, Scalar> difference(const Point<Scalar>& x, const Point<Scalar>& y) noexcept {
     if (y.is_empty) return filled<Vector<6, Scalar>>(6);
-    if (!y.is_axis) return Pose::difference<Scalar>(x.at, y.at);
+    if (!y.is_axis) {
+      Vector<6, Scalar> result = Pose::difference<Scalar>(x.at, y.at);
+      const Scalar fraction = y.has_free_turns ? turn_fraction(result) : Scalar(1);
+      for (int i = 3; i < 6 && fraction < Scalar(1); ++i) result(i) *= fraction;
+      return result;
+    }
     const Vector<3, Scalar> turn = Direction::difference<Scalar>(column(x.at.R, 2), column(y.at.R, 2));
     auto result = filled<Vector<6, Scalar>>(6);
     for (int i = 0; i < 3; ++i) result(3 + i) = turn(i);
@@ -50,7 +66,29 @@ struct FrameSpace {
   template <typename Scalar>
   [[nodiscard]] static Point<Scalar> displace(const Point<Scalar>& y, const Vector<6, Scalar>& d) noexcept {
     if (y.is_empty) return y;
-    return {Pose::displace<Scalar>(y.at, d), y.is_axis};
+    return {Pose::displace<Scalar>(y.at, d), y.is_axis, false, y.has_free_turns};
+  }
+
+  /// Fraction of the rotation vector r in an error with free rotations: 1 for |r| ≤ π − kTurnBand, then decreasing
+  /// linearly to 0 at |r| = π. At π, the rotation vector changes its sign, so that a constant fraction would make the
+  /// error discontinuous. If all three rotations are rows, the error decreases and |r| does not stay at π.
+  template <typename Scalar>
+  [[nodiscard]] static Scalar turn_fraction(const Vector<6, Scalar>& difference) noexcept {
+    constexpr Scalar kPi = static_cast<Scalar>(kTwoPi / 2.0);
+    const Scalar angle = norm(Vector<3, Scalar>(difference(3), difference(4), difference(5)));
+    return angle > kPi - kTurnBand<Scalar> ? (kPi - std::min(angle, kPi)) / kTurnBand<Scalar> : Scalar(1);
+  }
+
+  /// turn_fraction() of the error x ⊖ y, or 1 if the selected rows S have no rotation error.
+  template <typename Scalar, typename Selection>
+  [[nodiscard]] static Scalar slowed_fraction(const Point<Scalar>& x, const Point<Scalar>& y,
+                                              const Selection& S) noexcept {
+    if (!y.has_free_turns) return Scalar(1);
+    Vector<6, Scalar> turn = Pose::difference<Scalar>(x.at, y.at);
+    const Scalar fraction = turn_fraction(turn);
+    if (!(fraction < Scalar(1))) return Scalar(1);
+    for (int i = 0; i < 3; ++i) turn(i) = Scalar(0);
+    return (S * turn).norm() > kSelectedError<Scalar> * S.norm() ? fraction : Scalar(1);
   }
 };
 
@@ -92,6 +130,8 @@ class AnyFrameTask {
       if (has && selected[static_cast<std::size_t>(row)]) rows_[static_cast<std::size_t>(count_++)] = row;
     }
     if (count_ == 0) validation::reject("rows", " select no row of the task: must select at least one");
+    const auto turns = std::count_if(rows_.begin(), rows_.begin() + count_, [](int row) { return row >= 3; });
+    free_turns_ = turns == 1 || turns == 2;
   }
 
   [[nodiscard]] int rows() const noexcept { return count_; }
@@ -111,6 +151,7 @@ class AnyFrameTask {
                 Matrix<Eigen::Dynamic, 6>& S, Rows level) const noexcept {
     x.is_axis = kind_ == FrameCoordinates::kAxis;
     x.is_empty = count_ == 0;
+    x.has_free_turns = free_turns_;
     S.resize(count_, 6);
     if (count_ == 0) return;
     if (kind_ == FrameCoordinates::kCenterOfMass) return evaluate_center(robot, state, x, xd, S, level);
@@ -180,6 +221,7 @@ class AnyFrameTask {
   std::optional<LinkFrame<>> reference_;
   FrameCoordinates kind_ = FrameCoordinates::kPose;
   bool in_frame_ = false;
+  bool free_turns_ = false;  ///< Point::has_free_turns.
   int count_ = 0;
   std::array<int, 6> rows_{};  ///< Selected rows.
   Matrix<3, 3> to_axis_ = identity<Matrix<3, 3>>();

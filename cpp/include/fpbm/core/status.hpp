@@ -8,7 +8,7 @@ enum class Status : unsigned char {
   kOk = 0,
   kCoarse,      ///< The step is too long: the step length, and not the scheme, causes a significant tip error.
   kDamped,      ///< Near a singular posture: motion in the lost task directions is damped.
-  kSlowed,      ///< Joint limits reduce the task scale, or a lower level has stopped (Tick::scales).
+  kSlowed,      ///< Joint limits or rotations near π reduce a task scale, or a lower level has stopped (Tick::scales).
   kBlocked,     ///< Clearances, or bounds of tasks, reduce the task scale.
   kRecovering,  ///< No progress toward the target: the arm moves to a posture from which it can reach the target.
   kStalled,     ///< No progress toward the target: the arm rests until the target or a near shape moves, or resume().
@@ -33,7 +33,7 @@ enum class Status : unsigned char {
     case Status::kOk: return "the whole task is executed";
     case Status::kCoarse: return "the steps are too long: they cause a discretisation error of the tip";
     case Status::kDamped: return "the posture is nearly singular: motion in the singular directions is damped";
-    case Status::kSlowed: return "joint limits scale the task, or a lower level has stopped";
+    case Status::kSlowed: return "joint limits or free rotations near π scale the task, or a lower level has stopped";
     case Status::kBlocked: return "self-collision, obstacles or task bounds limit the task";
     case Status::kRecovering:
       return "the arm made no progress toward its target: it moves to a posture from which the target is reachable";
@@ -54,7 +54,7 @@ enum class Status : unsigned char {
     case Status::kDamped: return "Expect a tip error until the arm has left the singular posture.";
     case Status::kSlowed:
       return "Expect a tip error until the joints leave their limits, or slow the path. The scales of a stack show "
-             "which level is limited.";
+             "which level is limited. If a task leaves rotations free, replace its rotation rows by an AxisTask.";
     case Status::kBlocked:
       return "Lead the target around the nearest shape, or expect a tip error while shapes or bounds limit the task.";
     case Status::kRecovering: return "Expect a tip error until the arm is in that posture.";

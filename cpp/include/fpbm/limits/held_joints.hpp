@@ -49,18 +49,21 @@ class HeldJoints {
     bool above;  ///< Whether the joint is on its upper bound.
   };
 
-  void clear() noexcept {
+  /// Releases all joints. steepest: largest entry of direction() with which a joint may be held, at most kSteepest.
+  void begin(Scalar steepest) noexcept {
     count_ = 0;
     solved_ = 0;
     fixed_.reset();
+    steepest_ = steepest;
   }
+  [[nodiscard]] Scalar steepest() const noexcept { return steepest_; }
   [[nodiscard]] int count() const noexcept { return count_; }
   [[nodiscard]] const Held& operator[](int i) const noexcept { return held_[i]; }
   /// Whether a joint is held, or does not move because of the held joints.
   [[nodiscard]] bool has(Eigen::Index joint) const noexcept { return fixed_[index(joint)]; }
 
   /// du/ds: the goal plus the least-norm null-space motion Z Q y for which the held joints do not move. `goal` must be
-  /// the same for all joints that are held after clear(), so that y keeps its entries when a joint is added.
+  /// the same for all joints that are held after begin(), so that y keeps its entries when a joint is added.
   template <typename Basis, typename Motion>
   [[nodiscard]] Motion direction(const Basis& Z, const Motion& goal) noexcept {
     Motion rate = goal;
@@ -93,8 +96,8 @@ class HeldJoints {
                           RoundOff&& round_off) noexcept {
     split(Z, joint, count_);
     const Scalar outside = R_[count_][count_];
-    const bool is_free = count_ < Z.cols();
-    if (is_free && outside > kIndependent && rate <= kSteepest * outside) return add(joint, above);
+    const bool is_free = count_ < Z.cols() && rate <= steepest_ * outside;
+    if (is_free && outside > kIndependent) return add(joint, above);
     const Free c = coefficients();
     Scalar amplified(1);
     for (int i = 0; i < count_; ++i) amplified += std::abs(c.coeff(i));
@@ -105,8 +108,8 @@ class HeldJoints {
     if (is_free && outside > kIdle && outside <= kIndependent && rate <= outside * outside / kEpsilon) {
       return add(joint, above);
     }
-    // With a smaller coefficient, the released joint would leave its bound at a rate above kSteepest.
-    return replace(Z, joint, above, c, std::max(kRoundOff, rate / kSteepest));
+    // With a smaller coefficient, the released joint would leave its bound at a rate above steepest_.
+    return replace(Z, joint, above, c, std::max(kRoundOff, rate / steepest_));
   }
 
  private:
@@ -182,6 +185,7 @@ class HeldJoints {
     for (Eigen::Index k = 0; k < vector.size(); ++k) vector.coeffRef(k) /= length;
   }
 
+  Scalar steepest_ = kSteepest;
   int count_ = 0;
   int solved_ = 0;  ///< Number of held joints that y_ and change_ = Q y include.
   Scalar y_[kMost];

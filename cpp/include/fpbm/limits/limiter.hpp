@@ -70,7 +70,8 @@ class Limiter {
   [[nodiscard]] Result<Tasks> motion(const Tasks& tasks, const JointState& state, const JointVector& desired,
                                      const JointVector& last, const Rows<N, P, Scalar>& rows = {}) const noexcept {
     if constexpr (P > 0) {
-      if (!rows.admit(desired)) return limit_with_rows(rows, tasks, state, desired, last);
+      const bool first_admitted = !kHasLower<Tasks> || rows.admit(first_motion(tasks, desired));
+      if (!first_admitted || !rows.admit(desired)) return limit_with_rows(rows, tasks, state, desired, last);
     }
     return bounded(tasks, state, desired, last, rows);
   }
@@ -101,27 +102,47 @@ class Limiter {
 
  private:
   /// motion() for a desired motion u₀ that the rows do not admit: limits the nearest motion u that the rows admit
-  /// (inverse_task_metric()). The relative change of level k is c = min(‖J_k(u − u₀)‖/‖J_k u₀‖, 1). If
-  /// c > kNegligibleChange, the task scale of the level is multiplied by 1 − c.
+  /// (inverse_task_metric()). The first level follows its own motion, changed as if there were no lower levels. The
+  /// relative change of level k is c = min(‖J_k(u − u₀)‖/‖J_k u₀‖, 1). If c > kNegligibleChange, the task scale of the
+  /// level is multiplied by 1 − c.
   template <typename Tasks, int P>
   [[nodiscard]] Result<Tasks> limit_with_rows(const Rows<N, P, Scalar>& rows, const Tasks& tasks,
                                               const JointState& state, const JointVector& desired,
                                               const JointVector& last) const noexcept {
     const auto& J = first_level(tasks);
     constexpr int M = std::decay_t<decltype(J)>::RowsAtCompileTime;
-    RowProjection<M, N, P, Scalar> projection(J, inverse_task_metric(J, rows, desired), rows);
-    const JointVector admitted = projection(desired);
-    Result<Tasks> found = bounded(tasks, state, admitted, last, rows);
-    found.rows |= projection.active();
-    const JointVector change =
-        entrywise(admitted, [&](Eigen::Index i) { return admitted.coeff(i) - desired.coeff(i); });
-    multiply_scales(found, tasks, [&](const auto& level) noexcept {
-      const Scalar removed = norm(product(level, change));
-      const Scalar task = norm(product(level, desired));
-      if (!(removed > kNegligibleChange * task)) return Scalar(1);
-      return removed < task ? Scalar(1) - removed / task : Scalar(0);
-    });
-    return found;
+    std::uint32_t active = 0;
+    const auto admitted = [&](const JointVector& u) noexcept {
+      RowProjection<M, N, P, Scalar> projection(J, inverse_task_metric(J, rows, u), rows);
+      const JointVector nearest = projection(u);
+      active |= projection.active();
+      return nearest;
+    };
+    const JointVector& own = first_motion(tasks, desired);
+    const JointVector first = admitted(own);
+    const auto removed = [](const JointVector& from, const JointVector& to) noexcept {
+      return [&from, change = JointVector(to - from)](const auto& level) noexcept {
+        const Scalar lost = norm(product(level, change));
+        const Scalar task = norm(product(level, from));
+        if (!(lost > kNegligibleChange * task)) return Scalar(1);
+        return lost < task ? Scalar(1) - lost / task : Scalar(0);
+      };
+    };
+    if constexpr (kHasLower<Tasks>) {
+      JointVector all = first;
+      if (&own != &desired) all += null_space_motion(only_first(tasks), JointVector(admitted(desired) - first));
+      Tasks changed = tasks;
+      changed.set_first_motion(first);
+      Result<Tasks> found = bounded(changed, state, all, last, rows);
+      found.rows |= active;
+      multiply_scales(found, tasks, removed(own, first), removed(desired, all));
+      return found;
+    } else {
+      Result<Tasks> found = bounded(tasks, state, first, last, rows);
+      found.rows |= active;
+      multiply_scales(found, tasks, removed(own, first), removed(own, first));
+      return found;
+    }
   }
 
   /// motion() for a desired motion that the rows admit, at least approximately.
@@ -134,10 +155,26 @@ class Limiter {
     }
     if (box.contains(desired)) return with_scale(tasks, desired, Scalar(1));
     auto saturation = saturation_of(tasks, unit_, rows);
-    if (!limits_.bounds_jerk()) return within(saturation, tasks, state, box, rows, desired);
-    const Result<Tasks> found = within(saturation, tasks, state, box_in_time(limits_, state, last, box), rows, desired);
-    return toward_goal(saturation, box, rows, box.nearest(motions(limits_, state.qd, last)),
-                       approach(limits_, state.qd, found.u), found);
+    JointVector first;
+    if (!limits_.bounds_jerk()) return within(saturation, tasks, state, box, rows, desired, first);
+    const Result<Tasks> found =
+        within(saturation, tasks, state, box_in_time(limits_, state, last, box), rows, desired, first);
+    return after_last<Tasks>(saturation, state, last, box, rows, first, found);
+  }
+
+  /// Second pass with bounds on jerk: moves toward `found`, and the first level toward its motion `first`.
+  template <typename Tasks, typename Saturation, int P>
+  [[nodiscard]] Result<Tasks> after_last(Saturation& saturation, const JointState& state, const JointVector& last,
+                                         const Box<N, Scalar>& box, const Rows<N, P, Scalar>& rows,
+                                         const JointVector& first, const Result<Tasks>& found) const noexcept {
+    const JointVector steady = box.nearest(motions(limits_, state.qd, last));
+    if constexpr (kHasLower<Tasks>) {
+      const auto goals = approach(limits_, state.qd, first, found.u);
+      return toward_goal(saturation, box, rows, steady, goals.first, goals.all, found);
+    } else {
+      const JointVector goal = approach(limits_, state.qd, found.u, found.u).first;
+      return toward_goal(saturation, box, rows, steady, goal, goal, found);
+    }
   }
 
   /// u + N₁(r − u): resolves the first level as u does, and equals the braking motion r in the null space of the first
@@ -148,9 +185,9 @@ class Limiter {
     return u + null_space_motion(only_first(tasks), JointVector(r - u));
   }
 
-  /// bounded() with a reserve. The first level is resolved within the whole limits, with a braking motion in its null
-  /// space. The lower levels are resolved within the limits minus the reserve, widened to include the motion of the
-  /// first level.
+  /// bounded() with a reserve. If the own motion of the first level exceeds the limits minus the reserve, the first
+  /// level is resolved within the whole limits, with a braking motion in its null space. The lower levels are resolved
+  /// within the limits minus the reserve, widened to include the motion of the first level.
   template <typename Tasks, int P>
   [[nodiscard]] Result<Tasks> with_reserve(const Tasks& tasks, const JointState& state, const JointVector& desired,
                                            const JointVector& last, const Rows<N, P, Scalar>& rows,
@@ -160,25 +197,16 @@ class Limiter {
     Box<N, Scalar> lower = jerk ? lower_limits_.box_in_time(state) : lower_limits_.box(state, last);
     lower = {whole.nearest(lower.lower), whole.nearest(lower.upper)};
     auto saturation = saturation_of(tasks, unit_, rows);
-    Result<Tasks> found = with_scale(tasks, desired, Scalar(1));
-    if (!lower.contains(desired)) {
+    const JointVector& own = first_motion(tasks, desired);
+    Result<Tasks> found = with_scale(tasks, own, Scalar(1));
+    if (!lower.contains(own)) {
       const JointVector rest = rows.near(braking(state, whole), whole);
-      const JointVector first = braking_in_null_space(tasks, desired, rest);
-      found = saturation(whole, rest, first);
-      if (found.scale < Scalar(1)) {
-        blend_with_least_squares<kLevel>(first_level(tasks), state.qd, whole, rows, first, found);
-      }
-      if (!is_finite(found.u)) {
-        found.u = rest;
-        set_scale(found, Scalar(0));
-      } else {
-        lower = {lower.lower.cwiseMin(found.u), lower.upper.cwiseMax(found.u)};
-        resolve_lower(saturation, lower, desired, found);
-      }
+      found = resolve_first(saturation, tasks, state, whole, rows, braking_in_null_space(tasks, own, rest));
     }
-    if (!jerk) return found;
-    return toward_goal(saturation, box, rows, box.nearest(motions(limits_, state.qd, last)),
-                       approach(limits_, state.qd, found.u), found);
+    const JointVector first = found.u;
+    lower = {lower.lower.cwiseMin(first), lower.upper.cwiseMax(first)};
+    resolve_lower(saturation, lower, desired, found);
+    return jerk ? after_last<Tasks>(saturation, state, last, box, rows, first, found) : found;
   }
 
   /// Braking motion for saturation. With compensates_, in the box also for joints beyond their ranges, so that other
@@ -194,20 +222,32 @@ class Limiter {
     return rest;
   }
 
-  /// Motion within the bounds that realises as much as possible of the desired motion.
+  /// Motion within the bounds that realises as much as possible of the desired motion, level by level. first: set to
+  /// the motion of the first level alone, if there are lower levels.
   template <typename Saturation, typename Tasks, int P>
   [[nodiscard]] Result<Tasks> within(Saturation& saturation, const Tasks& tasks, const JointState& state,
                                      const Box<N, Scalar>& box, const Rows<N, P, Scalar>& rows,
-                                     const JointVector& desired) const noexcept {
+                                     const JointVector& desired, JointVector& first) const noexcept {
+    Result<Tasks> found = resolve_first(saturation, tasks, state, box, rows, first_motion(tasks, desired));
+    if constexpr (kHasLower<Tasks>) {
+      first = found.u;
+      resolve_lower(saturation, box, desired, found);
+    }
+    return found;
+  }
+
+  /// First level of within(). If the result of the saturation is not finite, the arm brakes.
+  template <typename Saturation, typename Tasks, int P>
+  [[nodiscard]] Result<Tasks> resolve_first(Saturation& saturation, const Tasks& tasks, const JointState& state,
+                                            const Box<N, Scalar>& box, const Rows<N, P, Scalar>& rows,
+                                            const JointVector& desired) const noexcept {
     if (box.contains(desired)) return with_scale(tasks, desired, Scalar(1));
     const JointVector rest = rows.near(braking(state, box), box);
     Result<Tasks> found = saturation(box, rest, desired);
     if (found.scale < Scalar(1)) {
       blend_with_least_squares<kLevel>(first_level(tasks), state.qd, box, rows, desired, found);
     }
-    if (is_finite(found.u)) {
-      resolve_lower(saturation, box, desired, found);
-    } else {
+    if (!is_finite(found.u)) {
       found.u = rest;
       set_scale(found, Scalar(0));
     }

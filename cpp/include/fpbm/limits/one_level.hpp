@@ -10,6 +10,13 @@ template <int M, int N, typename Scalar>
   return J;
 }
 
+/// Desired motion of the first level alone.
+template <int M, int N, typename Scalar>
+[[nodiscard]] const Vector<N, Scalar>& first_motion(const Matrix<M, N, Scalar>&,
+                                                    const Vector<N, Scalar>& desired) noexcept {
+  return desired;
+}
+
 /// Whether tasks have levels below the first level.
 template <typename Tasks>
 inline constexpr bool kHasLower = false;
@@ -33,17 +40,21 @@ void multiply_scales(SaturatedMotion<N, Scalar>& motion, const SaturatedMotion<N
   motion.scale *= other.scale;
 }
 
-/// Multiplies the scale of each level by factor(J), where J is the Jacobian of the level.
-template <int M, int N, typename Scalar, typename Factor>
-void multiply_scales(SaturatedMotion<N, Scalar>& motion, const Matrix<M, N, Scalar>& J, const Factor& factor) noexcept {
-  motion.scale *= factor(J);
+/// Multiplies the scale of the first level by first(J), and the scale of each lower level by lower(J), where J is the
+/// Jacobian of the level.
+template <int M, int N, typename Scalar, typename First, typename Lower>
+void multiply_scales(SaturatedMotion<N, Scalar>& motion, const Matrix<M, N, Scalar>& J, const First& first,
+                     const Lower&) noexcept {
+  motion.scale *= first(J);
 }
 
 template <int M, int N, typename Scalar, int P>
 [[nodiscard]] NullSpaceSaturation<M, N, Scalar, P> saturation_of(const Matrix<M, N, Scalar>& J,
                                                                  const Vector<N, Scalar>& unit,
                                                                  const Rows<N, P, Scalar>& rows) noexcept {
-  return {J, unit, rows};
+  NullSpaceSaturation<M, N, Scalar, P> saturation(J, unit, rows);
+  saturation.limit_compensation();
+  return saturation;
 }
 
 /// Resolves the levels below the first level. A single task has no lower levels.

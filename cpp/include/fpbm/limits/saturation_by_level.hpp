@@ -36,7 +36,9 @@ class SaturationByLevel {
         unit_(unit),
         rows_(rows),
         above_(space_of(levels.first(), unit)),
-        first_(first_saturation(levels.first(), above_, unit, rows)) {}
+        first_(first_saturation(levels.first(), above_, unit, rows)) {
+    first_.limit_compensation();
+  }
 
   /// Resolves the first level. rest: motion within the bounds from which the level starts.
   [[nodiscard]] Result operator()(const Box<N, Scalar>& box, const JointVector& rest,
@@ -50,8 +52,12 @@ class SaturationByLevel {
 
   /// Resolves the lower levels, starting from the motion of the first level. J_k u of a higher level does not change.
   void resolve_lower(const Box<N, Scalar>& box, const JointVector& desired, Result& result) const noexcept {
-    LevelSpace<N, Scalar> space = above_;
     bool whole = result.scale == Scalar(1);
+    if (whole && box.contains(desired) && rows_.admit(desired)) {
+      result.u = desired;
+      return;
+    }
+    LevelSpace<N, Scalar> space = above_;
     levels_.each_lower([&](std::size_t k, const auto& rows) noexcept {
       if (space.rank() == space.size()) return;  // The higher levels determine the motion.
       const JointVector goal =
@@ -63,6 +69,7 @@ class SaturationByLevel {
         result.u = goal;
       } else {
         NullSpaceSaturation<Eigen::Dynamic, N, Scalar, P> saturation(space, unit_, rows_);
+        saturation.limit_compensation();
         const SaturatedMotion<N, Scalar> found = saturation(box, result.u, goal);
         result.scales[k] = found.u.allFinite() ? found.scale : Scalar(0);
         if (found.u.allFinite()) result.u = found.u;

@@ -24,8 +24,18 @@ class TaskLevels {
       : enabled_(enabled), J_(J...) {}
 
   [[nodiscard]] const auto& first() const noexcept { return std::get<0>(J_); }
+  /// Sets the desired motion of the first level alone, without lower levels. The first level is then limited as if
+  /// there were no lower levels. `motion` must outlive this object.
+  void set_first_motion(const Vector<N, Scalar>& motion) noexcept { first_motion_ = &motion; }
+  /// Desired motion of the first level alone. By default, the desired motion of all levels.
+  [[nodiscard]] const Vector<N, Scalar>& first_motion(const Vector<N, Scalar>& desired) const noexcept {
+    return first_motion_ != nullptr ? *first_motion_ : desired;
+  }
   /// Leaves out all levels below the first level.
-  void disable_lower() noexcept { enabled_.fill(false); }
+  void disable_lower() noexcept {
+    enabled_.fill(false);
+    first_motion_ = nullptr;
+  }
 
   /// Calls f(k, J_k) for the enabled levels k = 1 … K − 1 below the first level.
   template <typename F>
@@ -40,6 +50,7 @@ class TaskLevels {
   }
 
   std::array<bool, sizeof...(Matrices)> enabled_;
+  const Vector<N, Scalar>* first_motion_ = nullptr;
   std::tuple<Matrices...> J_;
 };
 
@@ -56,6 +67,12 @@ template <int N, typename Scalar, typename... Matrices>
 
 template <int N, typename Scalar, typename... Matrices>
 inline constexpr bool kHasLower<TaskLevels<N, Scalar, Matrices...>> = sizeof...(Matrices) > 1;
+
+template <int N, typename Scalar, typename... Matrices>
+[[nodiscard]] const Vector<N, Scalar>& first_motion(const TaskLevels<N, Scalar, Matrices...>& levels,
+                                                    const Vector<N, Scalar>& desired) noexcept {
+  return levels.first_motion(desired);
+}
 
 /// The first level alone.
 template <int N, typename Scalar, typename... Matrices>
@@ -83,11 +100,12 @@ void multiply_scales(SaturatedLevels<N, Scalar, K>& motion, const SaturatedLevel
   motion.scale = motion.scales[0];
 }
 
-template <int N, typename Scalar, typename... Matrices, typename Factor>
+template <int N, typename Scalar, typename... Matrices, typename First, typename Lower>
 void multiply_scales(SaturatedLevels<N, Scalar, static_cast<int>(sizeof...(Matrices))>& motion,
-                     const TaskLevels<N, Scalar, Matrices...>& levels, const Factor& factor) noexcept {
-  motion.scales[0] *= factor(levels.first());
-  levels.each_lower([&](std::size_t k, const auto& J) noexcept { motion.scales[k] *= factor(J); });
+                     const TaskLevels<N, Scalar, Matrices...>& levels, const First& first,
+                     const Lower& lower) noexcept {
+  motion.scales[0] *= first(levels.first());
+  levels.each_lower([&](std::size_t k, const auto& J) noexcept { motion.scales[k] *= lower(J); });
   motion.scale = motion.scales[0];
 }
 

@@ -28,6 +28,7 @@ template <Level kLevel, typename Space, int N, typename Scalar, typename Guard_>
 class LimitedState {
  public:
   static constexpr bool kGuarded = !std::is_same_v<Guard_, Unguarded>;
+  static constexpr bool kHasLevels = kLevelsOf<Space> != 1;
   using JointVector = Vector<N, Scalar>;
   using JointState = State<N, Scalar>;
   using JointLimits = Limits<kLevel, N, Scalar>;
@@ -163,7 +164,6 @@ class LimitedState {
 
  private:
   static constexpr bool kSecondOrder = kLevel == Level::kAcceleration;
-  static constexpr bool kHasLevels = kLevelsOf<Space> != 1;
   /// Reserve of the first level (Limiter). Of the 10,000 motions along the path of `make grasp`, five lose the grasp
   /// with 0.4, one with 0.6, and none with 0.7.
   static constexpr Scalar kReserve = Scalar(0.7);
@@ -230,7 +230,12 @@ class LimitedState {
       // tip.
       loop.arm.kinematics(tick_.middle_of(next.q), loop.kinematics);
     }
-    const JointVector u = limited_motion(loop.kinematics, desired, rows, result);
+    JointVector u;
+    if constexpr (kHasLevels) {
+      u = limited_motion(loop.kinematics, desired, several ? slowed(loop.first) : desired, rows, result);
+    } else {
+      u = limited_motion(loop.kinematics, desired, desired, rows, result);
+    }
     if (fraction < Scalar(1)) {
       multiply_scale(result, fraction);
       result.status = worse(result.status, Status::kSlowed);
@@ -239,14 +244,17 @@ class LimitedState {
   }
 
   /// Desired motion within the limits. If the arm has stalled, or each joint brakes by itself (brakes()), the result is
-  /// the braking motion.
+  /// the braking motion. first: desired motion of the first level alone.
   template <int P>
   [[nodiscard, gnu::noinline]] JointVector limited_motion(const Kinematics<Space, N, Scalar>& kinematics,
-                                                          const JointVector& desired, const Rows<N, P, Scalar>& rows,
+                                                          const JointVector& desired,
+                                                          [[maybe_unused]] const JointVector& first,
+                                                          const Rows<N, P, Scalar>& rows,
                                                           Result& result) const noexcept {
     const bool braking = brakes(result.status) || result.status == Status::kStalled;
     const bool keeps_rows = result.status == Status::kStalled;
-    const auto tasks = jacobian_in_metres(kinematics);
+    auto tasks = jacobian_in_metres(kinematics);
+    if constexpr (kHasLevels) tasks.set_first_motion(first);
     auto found = with_scale(tasks, tick_.joints.qd, Scalar(0));
     if (braking) {
       found.u = limiter_.brake(tick_.joints, tick_.last, keeps_rows ? rows : Rows<N, P, Scalar>{}).u;

@@ -68,7 +68,7 @@ class MeasuredLimiter {
     const Box<N, Scalar> box = within_jerk(limits().box(state), last);
     if (box.contains(found.u) && rows.admit(found.u)) return found;
     auto saturation = saturation_of(tasks, unit_, rows);
-    return toward_goal(saturation, box, rows, box.nearest(last), found.u, found);
+    return toward_goal(saturation, box, rows, box.nearest(last), found.u, found.u, found);
   }
 
   /// As Limiter::brake(). At the end of the stop, the velocities decay as exp(−t/D), D = kRest H. A low-pass filter

@@ -25,7 +25,8 @@ template <typename Loop, typename Limiter, typename LimitedState, typename Space
     const Scalar fraction = tracker_state.dt() / limits.tick();
     if (fraction < Scalar(1)) guard.bound_speeds(limits, measured, fraction * loop.qdd, rows);
   }
-  const auto tasks = jacobian_in_metres(loop.kinematics);
+  auto tasks = jacobian_in_metres(loop.kinematics);
+  if constexpr (LimitedState::kHasLevels) tasks.set_first_motion(loop.first);
   auto found = with_scale(tasks, last, Scalar(0));
   const bool braking = tracker_state.stopping() || result.status >= Status::kStalled;
   if (braking) {

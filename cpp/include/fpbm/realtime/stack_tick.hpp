@@ -34,16 +34,33 @@ void take_scale(Tick<StackSpace<Levels...>, N, Scalar>& tick, const Motion& moti
   tick.scales = motion.scales;
 }
 
-/// Sets the scale to 0 for each level that was left out because a reference is not finite. If a lower level is slowed
-/// or left out, the status is at least kSlowed.
+/// Whether a task space reduces errors with free rotations near π (FrameSpace::slowed_fraction()).
+template <typename Space, typename = void>
+inline constexpr bool kHasSlowedFraction = false;
+template <typename Space>
+inline constexpr bool kHasSlowedFraction<Space, std::void_t<typename Space::HasSlowedFraction>> = true;
+
+/// Sets the scale to 0 for each level that was left out because a reference is not finite, and multiplies the scale of
+/// a level by FrameSpace::slowed_fraction(). If a level is slowed or left out, the status is at least kSlowed. x:
+/// targets.
 template <typename... Levels, int N, typename Scalar>
-void report_lower_levels(Tick<StackSpace<Levels...>, N, Scalar>& tick) noexcept {
+void report_levels(const Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics,
+                   const typename StackSpace<Levels...>::template Point<Scalar>& x,
+                   Tick<StackSpace<Levels...>, N, Scalar>& tick) noexcept {
   StackSpace<Levels...>::each([&](auto space, auto i, int row) noexcept {
-    constexpr int kLevel = Stack<Levels...>::level(static_cast<int>(decltype(i)::value));
-    for (int j = row; j < row + decltype(space)::kRows; ++j) {
+    using Part = decltype(space);
+    constexpr std::size_t kTask = decltype(i)::value;
+    constexpr int kLevel = Stack<Levels...>::level(static_cast<int>(kTask));
+    for (int j = row; j < row + Part::kRows; ++j) {
       if (!std::isfinite(tick.error(j))) tick.scales[kLevel] = Scalar(0);
     }
+    if constexpr (kHasSlowedFraction<Part>) {
+      if (!kinematics.enabled[kLevel]) return;
+      tick.scales[kLevel] *= Part::template slowed_fraction<Scalar>(std::get<kTask>(x), std::get<kTask>(kinematics.tip),
+                                                                    std::get<kTask>(kinematics.tasks).S);
+    }
   });
+  tick.scale = tick.scales[0];
   for (const Scalar scale : tick.scales) {
     if (scale < Scalar(1)) tick.status = worse(tick.status, Status::kSlowed);
   }

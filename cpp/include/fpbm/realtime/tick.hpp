@@ -4,6 +4,7 @@
 
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/types.hpp"
+#include "fpbm/model/kinematics.hpp"
 #include "fpbm/scheme/set_damping.hpp"
 #include "fpbm/singular/damping.hpp"
 
@@ -37,9 +38,10 @@ template <typename Space, int N, typename Scalar, typename Motion>
 void take_scale(Tick<Space, N, Scalar>& tick, const Motion& motion) noexcept {
   tick.scale = motion.scale;
 }
-/// Reports the levels below the first level. A single task has no lower level.
+/// Reports levels that are slowed for other reasons than limits. A single task has no levels.
 template <typename Space, int N, typename Scalar>
-void report_lower_levels(Tick<Space, N, Scalar>&) noexcept {}
+void report_levels(const Kinematics<Space, N, Scalar>&, const typename Space::template Point<Scalar>&,
+                   Tick<Space, N, Scalar>&) noexcept {}
 
 /// Scale of a task below the first level. row: first row of the task's error. A single task has no lower level.
 template <typename Space, int N, typename Scalar>

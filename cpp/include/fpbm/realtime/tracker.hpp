@@ -168,7 +168,7 @@ class Tracker {
     if (lower_levels_.rests() && !failed(result.status)) next = limited_.tick().slowed();
     limited_.finish_tick(loop, now, rows, next, field, one_acceleration, result);
     lower_levels_.report(result);
-    report_lower_levels(result);
+    report_levels(loop.kinematics, now.x, result);
     lower_levels_.end_tick(!limited_.stopping() && !failed(result.status), limited_.state().qd,
                            Scalar(guard().near_distance_sum()), correction.length());
     return result;
@@ -213,7 +213,7 @@ class Tracker {
     measure_error(loop.kinematics, now[0], result);
     resolve(loop, limited_.correction()(now[0]), dx, result);
     result.qdd = last_command_ = limit_measured(loop, measured_, limited_, measured, last_command_, result);
-    report_lower_levels(result);
+    report_levels(loop.kinematics, reference.x, result);
     return result;
   }
 

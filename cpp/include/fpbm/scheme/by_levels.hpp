@@ -46,15 +46,16 @@ struct ByLevels {
   void require_dof(Eigen::Index dof) const { scheme.require_dof(dof); }
 
   /// Joint accelerations [rad/s²], or velocities [rad/s]. A level whose references are not finite is ignored. If the
-  /// first level fails, u does not change. sigma: for the first level, as in AccelerationScheme::resolve().
+  /// first level fails, u does not change. sigma: for the first level, as in AccelerationScheme::resolve(). first: set
+  /// to the motion of the first level alone, unless null.
   [[nodiscard]] Status resolve(const Kinematics<Space, kDof, Scalar>& kinematics,
                                const Reference<Space, Scalar>& reference, const State<kDof, Scalar>& state,
-                               JointVector& u, Scalar* sigma = nullptr) const noexcept {
+                               JointVector& u, Scalar* sigma = nullptr, JointVector* first = nullptr) const noexcept {
     JointVector result;
     bool damped = false;
-    Status status = resolve_levels(kinematics, reference, state, false, damped, result, sigma);
+    Status status = resolve_levels(kinematics, reference, state, false, damped, result, sigma, first);
     if (damped && !failed(status) && scheme.null_space.template active<Level::kVelocity>()) {
-      status = resolve_levels(kinematics, reference, state, true, damped, result, sigma);
+      status = resolve_levels(kinematics, reference, state, true, damped, result, sigma, first);
     }
     if (failed(status)) return status;
     if (!is_finite(result)) return Status::kNotFinite;
@@ -69,7 +70,8 @@ struct ByLevels {
   /// remove this part from the level.
   [[nodiscard]] Status resolve_levels(const Kinematics<Space, kDof, Scalar>& kinematics,
                                       const Reference<Space, Scalar>& reference, const State<kDof, Scalar>& state,
-                                      bool apart, bool& damped, JointVector& result, Scalar* sigma) const noexcept {
+                                      bool apart, bool& damped, JointVector& result, Scalar* sigma,
+                                      JointVector* first) const noexcept {
     LevelSpace<kDof, Scalar> space(state.q.size());
     JointVector secondary;
     Status status = Status::kOk;
@@ -88,6 +90,7 @@ struct ByLevels {
       if constexpr (kIndex == 0) {
         result = filled<JointVector>(state.q.size());
         status = scheme.resolve_rows(r, xd, level.J, level.Jd, state, result, sigma);
+        if (first != nullptr) *first = result;
         if (apart) {
           secondary = secondary_motion(level, state.q);
           result -= secondary;

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <type_traits>
+
 #include "fpbm/core/level.hpp"
+#include "fpbm/core/parts.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/model/kinematics.hpp"
@@ -15,6 +18,7 @@ struct ClosedLoop {
   using Scalar = typename Arm::Scalar;
   static constexpr int N = Arm::kDof;
   static constexpr bool kSecondOrder = Scheme::kLevel == Level::kAcceleration;
+  struct NoMotion {};
   using X = Matrix<N, kSecondOrder ? 2 : 1, Scalar>;
 
   const Arm& arm;
@@ -22,6 +26,8 @@ struct ClosedLoop {
   Kinematics<Space, N, Scalar> kinematics;
   State<N, Scalar> state;
   Vector<N, Scalar> qdd;
+  /// Motion of the first level alone, if the tasks have several levels [rad/s²], or [rad/s] at velocity level.
+  std::conditional_t<kLevelsOf<Space> == 1, NoMotion, Vector<N, Scalar>> first{};
 
   /// X for a state.
   [[nodiscard]] static X packed(const State<N, Scalar>& state) noexcept {
@@ -72,13 +78,17 @@ struct ClosedLoop {
   /// Result u of the scheme. A scheme may omit the argument sigma.
   template <typename Scheme_>
   [[nodiscard]] auto resolve(const Scheme_& s, const Reference<Space, Scalar>& reference, Vector<N, Scalar>& u,
-                             Scalar* sigma, int) const noexcept
+                             Scalar* sigma, int) noexcept
       -> decltype(s.resolve(kinematics, reference, state, u, sigma)) {
-    return s.resolve(kinematics, reference, state, u, sigma);
+    if constexpr (kLevelsOf<Space> == 1) {
+      return s.resolve(kinematics, reference, state, u, sigma);
+    } else {
+      return s.resolve(kinematics, reference, state, u, sigma, &first);
+    }
   }
   template <typename Scheme_>
   [[nodiscard]] Status resolve(const Scheme_& s, const Reference<Space, Scalar>& reference, Vector<N, Scalar>& u,
-                               Scalar*, long) const noexcept {
+                               Scalar*, long) noexcept {
     return s.resolve(kinematics, reference, state, u);
   }
 };
