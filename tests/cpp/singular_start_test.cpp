@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
@@ -29,7 +31,7 @@ using Velocity = std::integral_constant<Level, Level::kVelocity>;
   return WMVN<N>(Vector<N>(Vector<N>::Ones(n)), 5.0);
 }
 
-/// Number of motions of each test. FPBM_MOTIONS=5000 gives the numbers of docs/singularities.md.
+/// Number of motions of each test. FPBM_MOTIONS=450 gives the numbers of docs/realtime.md.
 [[nodiscard]] int motions(int few) {
   const char* given = std::getenv("FPBM_MOTIONS");
   return given != nullptr ? std::atoi(given) : trials(few);
@@ -133,12 +135,12 @@ template <typename Space, typename Arm>
   return target;
 }
 
-/// What an arm does in the first second, and at last.
+/// Result of a motion.
 struct Motion {
-  bool left = false;      ///< Whether the error decreased, or the posture was regular, within a second.
-  bool reached = false;   ///< Whether the error fell below 1e-3 within 20 s.
-  double time = 0.0;      ///< Until then [s].
-  double excess = 0.0;    ///< Largest excess over the bounds on position, velocity, acceleration and jerk, relative.
+  bool left = false;     ///< Whether the error decreased, or the posture was regular, within a second.
+  bool reached = false;  ///< Whether the error fell below 1e-3 within 20 s.
+  double time = 0.0;     ///< Until then [s].
+  double excess = 0.0;   ///< Largest excess over the bounds on position, velocity, acceleration and jerk, relative.
 };
 
 template <typename Space, typename Kind, typename Arm>
@@ -147,8 +149,7 @@ template <typename Space, typename Kind, typename Arm>
   TrackerOptions<> options;
   options.dt = dt;
   const State<N> start{q0, Vector<N>::Zero(q0.size())};
-  CompiledTracker loop(arm, Space{}, scheme_of(kind, arm.dof()), start, options,
-                       Limits<Kind::value, N>(limits, dt));
+  CompiledTracker loop(arm, Space{}, scheme_of(kind, arm.dof()), start, options, Limits<Kind::value, N>(limits, dt));
   Kinematics<Space, N> kinematics;
   arm.kinematics(q0, kinematics);
   const double length = kinematics.length;
@@ -161,10 +162,9 @@ template <typename Space, typename Kind, typename Arm>
     if (i == 0) initial = error;
     for (Eigen::Index j = 0; j < q0.size(); ++j) {
       const double size = std::isfinite(limits.upper(j)) ? limits.upper(j) - limits.lower(j) : 1.0;
-      motion.excess =
-          std::max({motion.excess, (tick.q(j) - limits.upper(j)) / size, (limits.lower(j) - tick.q(j)) / size,
-                    std::abs(tick.qd(j)) / limits.velocity(j) - 1.0,
-                    std::abs(tick.qdd(j)) / limits.acceleration(j) - 1.0});
+      motion.excess = std::max({motion.excess, (tick.q(j) - limits.upper(j)) / size,
+                                (limits.lower(j) - tick.q(j)) / size, std::abs(tick.qd(j)) / limits.velocity(j) - 1.0,
+                                std::abs(tick.qdd(j)) / limits.acceleration(j) - 1.0});
       if (std::isfinite(limits.jerk(j))) {
         motion.excess = std::max(motion.excess, std::abs(tick.qdd(j) - last(j)) / (dt * limits.jerk(j)) - 1.0);
       }
@@ -182,66 +182,94 @@ template <typename Space, typename Kind, typename Arm>
 }
 
 struct Count {
-  int motions = 0, left = 0, reached = 0, yardstick = 0;
-  double time = 0.0, longest = 0.0, excess = 0.0;
+  int motions = 0;
+  int saddles = 0;  ///< Motions whose start is not a local minimum of the error, up to a small curvature.
+  int left = 0;     ///< Saddles that the arm left within a second.
+  int reached = 0;
+  int yardstick = 0;  ///< Targets that are reached from q0 + 0.001 rad. Counted if FPBM_MOTIONS is set.
+  double time = 0.0;
+  double excess = 0.0;
+
+  void operator+=(const Count& other) {
+    motions += other.motions;
+    saddles += other.saddles;
+    left += other.left;
+    reached += other.reached;
+    yardstick += other.yardstick;
+    time += other.time;
+    excess = std::max(excess, other.excess);
+  }
 };
 
+void print(const std::string& name, const Count& of) {
+  std::printf("%s: %d of %d saddle points left within 1 s, %d of %d targets reached in %.1f s on average", name.c_str(),
+              of.left, of.saddles, of.reached, of.motions, of.time / std::max(of.reached, 1));
+  if (std::getenv("FPBM_MOTIONS") != nullptr) std::printf(" (from q0 + 0.001 rad: %d)", of.yardstick);
+  std::printf(", bounds exceeded by %.1e\n", of.excess);
+}
+
+/// Whether the error has a direction of negative curvature at q. A curvature of less than 3e-4 of the trace of the
+/// Hessian is not counted: the error then decreases by less than 1 % over 0.8 rad.
+template <typename Space, typename Arm>
+[[nodiscard]] bool is_saddle(const Arm& arm, const Vector<N>& q, const Reference<Space>& target) {
+  const Eigen::MatrixXd hessian = error_hessian<Space>(arm, q, target.x);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> pairs(hessian, Eigen::EigenvaluesOnly);
+  return pairs.eigenvalues().minCoeff() < -3e-4 * hessian.trace();
+}
+
 template <typename Space, typename Kind, typename Arm>
-void count(Kind kind, const std::string& name, const Arm& arm, JointLimits<N> limits, int trials, Count& all) {
+[[nodiscard]] Count count(Kind kind, const Arm& arm, int trials) {
+  constexpr int kPostures = 5;
+  constexpr int kTargets = 3;
+  constexpr double kTicks[] = {0.001, 0.004, 0.02};
   Count of;
-  const int kinds = 5;
+  JointLimits<N> limits = arm.limits();
   for (int k = 0; k < trials; ++k) {
     Random random(static_cast<std::uint32_t>(k));
-    const auto q0 = singular_posture<Space>(arm, k % kinds, random);
+    const auto q0 = singular_posture<Space>(arm, k % kPostures, random);
     if (!q0) continue;
-    const auto found = target_of<Space>(arm, *q0, k / kinds % 3, random);
-    if (!found) continue;
-    const auto target = *found;
-    const double dt = std::vector<double>{0.001, 0.004, 0.02}[static_cast<std::size_t>(random.uniform(0.0, 2.999))];
+    const auto target = target_of<Space>(arm, *q0, k / kPostures % kTargets, random);
+    if (!target) continue;
+    const double dt = kTicks[k / 2 % 3];
     for (Eigen::Index i = 0; i < arm.dof(); ++i) {
       limits.jerk(i) = k % 2 == 0 ? JointBounds<>::kNone : 50.0 * limits.acceleration(i);
     }
-    const Motion motion = moved<Space>(kind, arm, *q0, target, dt, limits);
-    if (std::getenv("FPBM_YARDSTICK") != nullptr || std::getenv("FPBM_SHOW") != nullptr) {
-      Vector<N> near = *q0;
-      for (Eigen::Index i = 0; i < near.size(); ++i) near(i) += near(i) + 1e-3 > limits.upper(i) ? -1e-3 : 1e-3;
-      const Motion other = moved<Space>(kind, arm, near, target, dt, limits);
-      of.yardstick += other.reached;
-      if (std::getenv("FPBM_SHOW") != nullptr && (!motion.left || (!motion.reached && other.reached))) {
-        std::printf("  %s rows %d level %d seed %d kind %d target %d dt %g: left %d reached %d (yardstick %d)\n", name.c_str(),
-                    Space::kRows, static_cast<int>(Kind::value), k, k % kinds, k / kinds % 3, dt, motion.left, motion.reached,
-                    other.reached);
-      }
-    }
+    const Motion motion = moved<Space>(kind, arm, *q0, *target, dt, limits);
     ++of.motions;
-    of.left += motion.left;
+    if (is_saddle<Space>(arm, *q0, *target)) {
+      ++of.saddles;
+      of.left += motion.left;
+      EXPECT_TRUE(motion.left) << "rows " << Space::kRows << ", seed " << k;
+    }
     of.reached += motion.reached;
     of.time += motion.time;
-    of.longest = std::max(of.longest, motion.time);
     of.excess = std::max(of.excess, motion.excess);
+    if (std::getenv("FPBM_MOTIONS") == nullptr) continue;
+    Vector<N> near = *q0;
+    for (Eigen::Index i = 0; i < near.size(); ++i) near(i) += near(i) + 1e-3 > limits.upper(i) ? -1e-3 : 1e-3;
+    of.yardstick += moved<Space>(kind, arm, near, *target, dt, limits).reached;
   }
-  if (of.motions == 0) return;
-  std::printf("%s, %d rows, %s level: %d of %d left within 1 s, %d reached (from q0 + 0.001 rad: %d), mean %.1f s, %.1e\n",
-              name.c_str(), Space::kRows, Kind::value == Level::kAcceleration ? "acceleration" : "velocity", of.left,
-              of.motions, of.reached, of.yardstick, of.reached > 0 ? of.time / of.reached : 0.0, of.excess);
-  all.motions += of.motions;
-  all.left += of.left;
-  all.reached += of.reached;
-  all.yardstick += of.yardstick;
-  all.excess = std::max(all.excess, of.excess);
+  return of;
 }
 
 template <typename Kind>
 void expect_departures(Kind kind) {
   Count all;
-  const int each = motions(10);
+  const int each = motions(30);
   for (const presets::Preset& preset : presets::kAll) {
+    SCOPED_TRACE(preset.name);
     const auto arm = any_arm(preset.chain());
-    count<Pose>(kind, preset.name, arm, arm.limits(), each, all);
-    count<Position<3>>(kind, preset.name, arm, arm.limits(), each, all);
+    const Count poses = count<Pose>(kind, arm, each);
+    print(std::string(preset.name) + ", pose", poses);
+    all += poses;
+    const Count positions = count<Position<3>>(kind, arm, each);
+    if (positions.motions > 0) print(std::string(preset.name) + ", position", positions);
+    all += positions;
   }
-  std::printf("all: %d of %d left within 1 s, %d reached (%d)\n", all.left, all.motions, all.reached, all.yardstick);
-  EXPECT_EQ(all.left, all.motions);
+  print("all", all);
+  EXPECT_EQ(all.left, all.saddles);
+  // The other targets are local minima of the error, far from q0, or beyond limits of joints.
+  EXPECT_GE(all.reached, all.motions * 8 / 10);
   EXPECT_LE(all.excess, 1e-9);
 }
 
@@ -250,6 +278,100 @@ TEST(SingularStart, is_left_within_a_second_at_acceleration_level) {
 }
 TEST(SingularStart, is_left_within_a_second_at_velocity_level) {
   expect_departures(Velocity{});
+}
+
+template <typename Kind>
+void expect_planar_departure(Kind kind) {
+  const auto arm = any_planar_arm(Vector<4>::Ones());
+  auto limits = JointLimits<N>::none(4);
+  for (const Vector<4>& q0 :
+       {Vector<4>(0, 0, 0, 0), Vector<4>(0.3, 0, 0, 0), Vector<4>(0.3, 3.14159265358979323846, 0, 0)}) {
+    for (const double inward : {0.01, 0.3, 1.0}) {
+      for (const double dt : {0.001, 0.004, 0.02}) {
+        for (int i = 0; i < 4; ++i) limits.set(i, {-3.2, 3.2, 2.0, 10.0});
+        Kinematics<Position<2>, N> kinematics;
+        arm.kinematics(Vector<N>(q0), kinematics);
+        auto target = Reference<Position<2>>::hold(kinematics.tip);
+        target.x *= 1.0 - inward / kinematics.tip.norm();
+        const Motion motion = moved<Position<2>>(kind, arm, q0, target, dt, limits);
+        EXPECT_TRUE(motion.left && motion.reached) << q0.transpose() << ", inward " << inward << ", dt " << dt;
+        EXPECT_LE(motion.excess, 1e-9);
+      }
+    }
+  }
+}
+TEST(SingularStart, of_four_links_in_line_is_left) {
+  expect_planar_departure(Acceleration{});
+  expect_planar_departure(Velocity{});
+}
+
+/// Starts that are nearly singular. Without the recovery, feedback needs more than the stall time below 1e-6 rad.
+template <typename Kind>
+void expect_departures_near_zero(Kind kind) {
+  const auto arm = any_arm(presets::iiwa14());
+  for (const double offset : {0.0, 1e-12, 1e-9, 1e-6, 1e-4, 1e-3}) {
+    const Vector<N> q0 = Vector<N>::Constant(7, offset);
+    Kinematics<Pose, N> kinematics;
+    arm.kinematics(q0, kinematics);
+    for (const Vector<3>& by : {Vector<3>(0, 0, -0.2), Vector<3>(0, 0.2, -0.05), Vector<3>(0.1, 0.1, -0.1)}) {
+      auto target = Reference<Pose>::hold(kinematics.tip);
+      target.x.p += by;
+      const Motion motion = moved<Pose>(kind, arm, q0, target, 1e-3, arm.limits());
+      EXPECT_TRUE(motion.left && motion.reached) << offset << ", by " << by.transpose();
+      EXPECT_LE(motion.time, 6.0) << offset << ", by " << by.transpose();
+    }
+  }
+}
+TEST(SingularStart, nearly_singular_is_left) {
+  expect_departures_near_zero(Acceleration{});
+  expect_departures_near_zero(Velocity{});
+}
+
+/// An outstretched arm with an unreachable target is in a local minimum of the error, and stays at rest.
+template <typename Kind>
+void expect_rest(Kind kind) {
+  const auto arm = any_arm(presets::iiwa14());
+  for (const double q1 : {0.0, 0.4, 1.2}) {
+    Vector<N> q0 = Vector<N>::Zero(7);
+    q0(1) = q1;
+    Kinematics<Position<3>, N> kinematics;
+    arm.kinematics(q0, kinematics);
+    const Vector<3> shoulder(0.0, 0.0, 0.36);
+    for (const double out : {0.001, 0.1, 2.0}) {
+      auto target = Reference<Position<3>>::hold(kinematics.tip);
+      target.x += out * (target.x - shoulder).normalized();
+      CompiledTracker loop(arm, Position<3>{}, scheme_of(kind, 7), q0);
+      for (int i = 0; i < 4000; ++i) {
+        const auto tick = loop.tick(target);
+        ASSERT_NE(tick.status, Status::kRecovering) << q1 << ' ' << out << ' ' << i;
+        ASSERT_LE((tick.q - q0).cwiseAbs().maxCoeff(), 1e-5) << q1 << ' ' << out << ' ' << i;
+        if (i == 3999 && out > 0.01) {
+          EXPECT_EQ(tick.status, Status::kStalled) << q1 << ' ' << out;
+        }
+      }
+    }
+  }
+}
+TEST(SingularStart, is_kept_while_the_target_is_unreachable) {
+  expect_rest(Acceleration{});
+  expect_rest(Velocity{});
+}
+
+/// stop() ends the motion out of the posture; afterwards the arm reaches its target.
+TEST(SingularStart, is_not_left_after_stop) {
+  const auto arm = any_arm(presets::iiwa14());
+  CompiledTracker loop(arm, Position<3>{}, scheme_of(Acceleration{}, 7), Vector<N>(Vector<N>::Zero(7)));
+  auto target = Reference<Position<3>>::hold(loop.tip());
+  target.x(2) -= 0.2;
+  auto tick = loop.tick(target);
+  for (int i = 0; i < 200; ++i) tick = loop.tick(target);
+  ASSERT_EQ(tick.status, Status::kRecovering);
+  loop.stop();
+  for (int i = 0; i < 1000; ++i) tick = loop.tick(target);
+  EXPECT_TRUE(tick.qd.isZero(0.0));
+  loop.resume();
+  for (int i = 0; i < 6000; ++i) tick = loop.tick(target);
+  EXPECT_LT(tick.error.norm(), 1e-4);
 }
 
 }  // namespace
