@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "fpbm/linalg/eigenpairs_below.hpp"
-#include "fpbm/linalg/product.hpp"
+#include "fpbm/linalg/entrywise.hpp"
+#include "fpbm/linalg/sums.hpp"
 #include "fpbm/model/joint.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/realtime/task_distance.hpp"
