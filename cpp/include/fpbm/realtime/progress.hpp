@@ -103,8 +103,9 @@ class Progress {
   /// Time at rest, and time without progress in motion, after which an arm leaves a singular posture [s].
   static constexpr Scalar kPatience = Scalar(0.1);
   static constexpr Scalar kMovingPatience = Scalar(0.5);
-  /// Error below which an arm does not leave a singular posture, as in StallDetector: 0.1 mm for an arm of 1 m.
-  static constexpr Scalar kSmall = Scalar(1e-4);
+  /// Error below which an arm does not leave a singular posture. With 1e-4, arms that slowly approach targets at the
+  /// ends of their ranges start recoveries (Recovery.is_ended_by_stop_and_by_invalid_targets fails).
+  static constexpr Scalar kSmall = Distance::kProgress;
 
   StallDetector<Space, Scalar> stall_;
   Recovery<Space, N, Scalar> recovery_;
