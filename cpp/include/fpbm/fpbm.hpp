@@ -150,6 +150,7 @@
 #include "fpbm/realtime/recovery.hpp"
 #include "fpbm/realtime/reference_sources.hpp"
 #include "fpbm/realtime/require_stable.hpp"
+#include "fpbm/realtime/saddle_exit.hpp"
 #include "fpbm/realtime/shape_watch.hpp"
 #include "fpbm/realtime/stack_tick.hpp"
 #include "fpbm/realtime/stack_tracker.hpp"

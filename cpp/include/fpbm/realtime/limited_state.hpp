@@ -134,6 +134,7 @@ class LimitedState {
   template <typename Loop, typename Target, typename Rows>
   void finish_tick(Loop& loop, const Target& now, Rows rows, JointState next, const JointVector& field,
                    bool one_acceleration, Result& result) noexcept {
+    const bool damped = result.status == Status::kDamped;
     if constexpr (kGuarded) {
       progress_.watch_shapes(tick_.joints.qd.isZero(Scalar(0)), guard_.near_distance_sum(), correction_.length());
     }
@@ -159,7 +160,7 @@ class LimitedState {
     result.qdd = tick_.acceleration_to(next);
     const JointVector q = tick_.joints.q;
     tick_.store(std::move(next), result.qdd);
-    if (!stopping_ && !failed(result.status)) update_progress(q, now, recovering, result);
+    if (!stopping_ && !failed(result.status)) update_progress(loop.arm, q, now, recovering, damped, result);
   }
 
  private:
@@ -286,9 +287,10 @@ class LimitedState {
   }
 
   /// Updates the integral of the error and the detection of a stall, unless the joints return from a start outside
-  /// their bounds. q: posture at the start of the tick.
-  template <typename Target>
-  void update_progress(const JointVector& q, const Target& now, bool recovering, const Result& result) noexcept {
+  /// their bounds. q: posture at the start of the tick. damped: whether the scheme damped the desired motion.
+  template <typename Arm, typename Target>
+  void update_progress(const Arm& arm, const JointVector& q, const Target& now, bool recovering, bool damped,
+                       const Result& result) noexcept {
     if (returning_) {
       returning_ = !limits().is_viable(tick_.joints, tick_.last);
       return;
@@ -296,10 +298,21 @@ class LimitedState {
     const Scalar length = correction_.length();
     if (recovering) return progress_.recovered(tick_.joints.q, now.x, length);
     if (result.status != Status::kOk || correction_.far()) {
-      return progress_.missed(tick_.joints.q, limits().bounds().velocity, now.x, result, length, correction_.far());
+      if (progress_.missed(tick_.joints.q, limits().bounds().velocity, now.x, result, length, correction_.far(),
+                           damped)) {
+        leave_saddle(arm, now, TaskDistance<Space, Scalar>::norm(result.error, length));
+      }
+      return;
     }
     correction_.integrate(result);
     progress_.done(q, now.x, result, length);
+  }
+
+  /// Starts a recovery from a singular posture that is a saddle point of the error.
+  template <typename Arm, typename Target>
+  [[gnu::cold, gnu::noinline]] void leave_saddle(const Arm& arm, const Target& now, Scalar error) noexcept {
+    const JointVector& q = tick_.joints.q;
+    progress_.leave(q, saddle_exit<Space>(arm, q, now.x, correction_(now).x, limits().bounds()), error);
   }
 
   /// Whether each joint brakes by itself. A stop that keeps the first level moves the joints together.

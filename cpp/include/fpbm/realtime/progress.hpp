@@ -2,6 +2,7 @@
 
 #include "fpbm/core/status.hpp"
 #include "fpbm/realtime/recovery.hpp"
+#include "fpbm/realtime/saddle_exit.hpp"
 #include "fpbm/realtime/stall_detector.hpp"
 #include "fpbm/realtime/tick.hpp"
 
@@ -21,6 +22,7 @@ class Progress {
   Progress(const TrackerOptions<Scalar>& options, const JointVector& q0, JointBits continuous)
       : stall_(options.stall_time, options.dt),
         recovery_(q0, options.stall_time, options.dt, continuous),
+        dt_(options.dt),
         recovers_(options.recovery) {}
 
   /// Stores the start posture and its tip as the first posture of a recovery. length: the arm's characteristic length
@@ -47,24 +49,43 @@ class Progress {
 
   /// Call after a tick of a recovery. q: posture after the tick.
   void recovered(const JointVector& q, const Point& target, Scalar length) noexcept {
-    if (stall_.has_moved(target, length)) return try_again();
+    if (!recovery_.leaving() && stall_.has_moved(target, length)) return try_again();
     if (recovery_.advance(q)) stall_.reset();
   }
 
   /// Call after a tick that did not execute the whole task. q: posture after the tick. velocity: bounds on the joint
-  /// velocities [rad/s]. far: whether the target is beyond the error bound.
-  [[gnu::noinline]] void missed(const JointVector& q, const JointVector& velocity, const Point& target,
-                                const Result& result, Scalar length, bool far) noexcept {
+  /// velocities [rad/s]. far: whether the target is beyond the error bound. damped: whether the scheme damped the
+  /// desired motion. Returns whether the arm makes no progress in a nearly singular posture, so that the caller should
+  /// call leave().
+  [[nodiscard, gnu::noinline]] bool missed(const JointVector& q, const JointVector& velocity, const Point& target,
+                                           const Result& result, Scalar length, bool far, bool damped) noexcept {
     const Scalar error = Distance::norm(result.error, length);
     bool crawls = true;
+    bool rests = true;
     for (Eigen::Index i = 0; i < q.size(); ++i) {
       const Scalar bound = velocity.coeff(i);
-      crawls = crawls && std::isfinite(bound) && std::abs(result.qd.coeff(i)) < kCrawl * bound;
+      const Scalar speed = std::abs(result.qd.coeff(i));
+      crawls = crawls && std::isfinite(bound) && speed < kCrawl * bound;
+      rests = rests && speed < kCrawl * std::min(bound, Scalar(1));
     }
     if (stall_.has_moved(target, length)) recovery_.renew();
     stall_.update(target, error, length, result.scale == Scalar(1) && !far, crawls);
     recovery_.follow(target, length);
     if (recovers_ && result.status == Status::kStalled && stall_.stalled()) recovery_.begin(q, target, error, length);
+    if (!damped || !recovers_ || !(error > kSmall) || result.status == Status::kStalled) {
+      waited_ = Scalar(0);
+      return false;
+    }
+    waited_ = rests || stall_.waits() ? waited_ + dt_ : Scalar(0);
+    if (waited_ < (rests ? kPatience : kMovingPatience)) return false;
+    waited_ = Scalar(0);
+    return true;
+  }
+
+  /// Leads the arm to a posture from which the feedback of the tip can continue (SaddleExit). error: distance of the
+  /// arm's own tip from the target.
+  void leave(const JointVector& q, const SaddleExit<N, Scalar>& exit, Scalar error) noexcept {
+    recovery_.leave(q, exit.q, exit.distance, error);
   }
 
   /// Call after a tick that executed the whole task. q: posture at the start of the tick.
@@ -80,8 +101,17 @@ class Progress {
   /// the test passes with 0.001 to 0.1.
   static constexpr Scalar kCrawl = Scalar(0.01);
 
+  /// Time at rest, and time without progress in motion, after which an arm leaves a singular posture [s].
+  static constexpr Scalar kPatience = Scalar(0.1);
+  static constexpr Scalar kMovingPatience = Scalar(0.5);
+  /// Error below which an arm does not leave a singular posture. With 1e-4, arms that slowly approach targets at the
+  /// ends of their ranges start recoveries (Recovery.is_ended_by_stop_and_by_invalid_targets fails).
+  static constexpr Scalar kSmall = Distance::kProgress;
+
   StallDetector<Space, Scalar> stall_;
   Recovery<Space, N, Scalar> recovery_;
+  Scalar dt_;
+  Scalar waited_ = Scalar(0);  ///< Time at rest or without progress in a nearly singular posture [s].
   bool recovers_;
 };
 

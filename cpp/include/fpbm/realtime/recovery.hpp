@@ -76,18 +76,26 @@ class Recovery {
   /// the arm's own tip from the target.
   [[gnu::cold, gnu::noinline]] bool begin(const JointVector& q, const Point& target, Scalar error,
                                           Scalar length) noexcept {
+    if (count_of_target_ > kPostures) return false;
     const auto [distance, best] = nearest(target, length);
     const Scalar bound = std::min(error, last_distance_);
     const bool nearer = distance < bound - Distance::step(bound);
     if (!nearer && (returned_ || !(distance < kReturned * farthest_))) return false;
     returned_ = returned_ || !nearer;
-    last_distance_ = distance;
-    goal_ = nearest_turns(memory_[best].q, q, continuous_);
-    start_distance_ = least_distance_ = distance_to(q);
-    waited_ = Scalar(0);
-    active_ = true;
+    start(q, nearest_turns(memory_[best].q, q, continuous_), distance, kArrived);
     return true;
   }
+
+  /// Starts a recovery to a posture near the posture q, if the tip of the posture is nearer to the target than the
+  /// arm's own tip and the tip of the last recovery. The recovery ends halfway, where the feedback of the tip can
+  /// continue. distance, error: distances of the tip of the posture, and of the arm's own tip, from the target.
+  void leave(const JointVector& q, const JointVector& posture, Scalar distance, Scalar error) noexcept {
+    const Scalar bound = std::min(error, last_distance_);
+    if (count_of_target_ > kPostures || !(distance < bound - std::min(Distance::kProgress, kApproach * bound))) return;
+    start(q, posture, distance, kHalfway);
+  }
+  /// Whether the joints are moving to the posture of leave().
+  [[nodiscard]] bool leaving() const noexcept { return active_ && arrived_ == kHalfway; }
 
   /// Call after a tick of the recovery. Returns true if the arm has arrived. The recovery also ends if there is no
   /// progress for the time `patience`.
@@ -95,7 +103,7 @@ class Recovery {
     const Scalar distance = distance_to(q);
     waited_ = distance < least_distance_ - kArrived * start_distance_ ? Scalar(0) : waited_ + dt_;
     if (waited_ == Scalar(0)) least_distance_ = distance;
-    const bool arrived = distance <= kArrived * start_distance_;
+    const bool arrived = distance <= arrived_ * start_distance_;
     active_ = !arrived && waited_ <= patience_;
     return arrived;
   }
@@ -103,6 +111,7 @@ class Recovery {
   /// Call if the target has moved, or for another attempt. Every remembered posture is a candidate again.
   void renew() noexcept {
     active_ = returned_ = false;
+    count_of_target_ = 0;
     last_distance_ = std::numeric_limits<Scalar>::infinity();
   }
 
@@ -136,6 +145,21 @@ class Recovery {
   static constexpr Scalar kRate =
       Scalar(2);  ///< Rate of the approach [1/s]. Both poles of the acceleration are at −2 kRate.
   static constexpr Scalar kArrived = Scalar(0.02);  ///< Fraction of the initial distance that counts as arrived.
+
+  /// Fraction of the initial distance at which a recovery to a posture of leave() ends.
+  static constexpr Scalar kHalfway = Scalar(0.5);
+  /// Relative decrease of the distance for which leave() starts a recovery, as for a damped arm (StallDetector).
+  static constexpr Scalar kApproach = Scalar(1) / Scalar(256);
+
+  void start(const JointVector& q, const JointVector& goal, Scalar distance, Scalar arrived) noexcept {
+    ++count_of_target_;
+    last_distance_ = distance;
+    goal_ = goal;
+    arrived_ = arrived;
+    start_distance_ = least_distance_ = distance_to(q);
+    waited_ = Scalar(0);
+    active_ = true;
+  }
 
   [[nodiscard]] Scalar distance_to(const JointVector& q) const noexcept {
     return std::sqrt(entrywise(q, [&](Eigen::Index i) { return (goal_(i) - q(i)) * (goal_(i) - q(i)); }).sum());
@@ -187,6 +211,8 @@ class Recovery {
   Scalar last_distance_ = std::numeric_limits<Scalar>::infinity();
   /// Largest distance of the target from the nearest remembered tip since the last settle().
   Scalar farthest_ = Scalar(0);
+  int count_of_target_ = 0;            ///< Recoveries since the last renew().
+  Scalar arrived_ = kArrived;          ///< Fraction of the initial distance that counts as arrived.
   bool returned_ = false;              ///< Whether the return of the target has caused a recovery.
   Scalar start_distance_ = Scalar(0);  ///< Distance to the posture at the start of the recovery.
   Scalar least_distance_ = Scalar(0);  ///< Smallest distance to the posture during the recovery.

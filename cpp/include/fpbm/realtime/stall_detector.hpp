@@ -35,6 +35,9 @@ class StallDetector {
 
   [[nodiscard]] bool stalled() const noexcept { return waited_ > stall_time_; }
 
+  /// Whether the last tick made no progress.
+  [[nodiscard]] bool waits() const noexcept { return waited_ > Scalar(0); }
+
   /// Whether the target has moved since the last progress.
   [[nodiscard]] bool has_moved(const Point& target, Scalar length) const noexcept {
     return Distance::between(target, target_, length) > Distance::kProgress;

@@ -73,7 +73,8 @@ struct TrackerOptions {
   /// Null-space damping [1/s] for a scheme of acceleration level that has none; 0: none. Without damping, self-motion
   /// at acceleration level never stops. With 2, the usual value of this library, self-motion decays to 1 % in 2.3 s.
   Scalar null_damping = Scalar(2);
-  /// Whether a stalled arm may move to a remembered posture from which the target is reachable (Recovery).
+  /// Whether a stalled arm may move to a remembered posture from which the target is reachable (Recovery), and an arm
+  /// at rest may leave a singular posture (SaddleExit).
   bool recovery = true;
   /// Whether limits and stops preserve the first of several levels. A part of the limits is reserved for the first
   /// level: 0.7 of each bound on acceleration and 0.35 of each bound on velocity. stop() keeps the first level: its
