@@ -178,7 +178,7 @@ class Clearance(Data):
         if tips is not None:
             tips = [tips] if isinstance(tips, str) else list(tips)
         if tip is None:
-            robot = Robot(**read_tree(path, base=base, locked=locked, tips=tips, limits=limits))
+            robot = Robot(**read_tree(path, base=base, locked=locked, tips=tips, limits=limits, notes=[]))
             joints = [each.joint for each in robot.joints]
         else:
             joints = list(SerialArm(*read_places(path, tip, base, limits)[:2]).joints)

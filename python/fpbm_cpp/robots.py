@@ -174,13 +174,9 @@ class Robot(Data, CoreRobot):
         Raises ValueError if the file is not a valid URDF or more than MAX_DOF joints move, ParameterError if a locked
         joint does not exist or its position is out of range, OSError if the file cannot be read.
         """
-        from .io.urdf import warn
         from .io.urdf_tree import read_tree
 
-        notes: list[str] = []
-        robot = cls(**read_tree(path, base=base, locked=locked or {}, tips=tips, limits=limits, notes=notes))
-        warn(path, notes, 3)
-        return robot
+        return cls(**read_tree(path, base=base, locked=locked or {}, tips=tips, limits=limits))
 
 
 def _from_urdf(

@@ -130,7 +130,7 @@ def _joints(
 ) -> tuple[list[TreeJoint], Places]:
     """The moving joints as joints of a tree, and the place of each link of the file."""
     if tip is None:
-        tree = read_tree(path, base=base, locked=locked, tips=tips, limits=limits)
+        tree = read_tree(path, base=base, locked=locked, tips=tips, limits=limits, notes=[])
         return tree["joints"], {frame.name: (frame.link, frame.offset) for frame in tree["named_frames"]}
     for name, given in {"locked": locked, "tips": tips}.items():
         if given is not None:

@@ -28,6 +28,7 @@ from .urdf import (
     pose,
     step_of,
     tree_of,
+    warn,
     without_range,
 )
 from .urdf_file import Mass, UrdfJoint, read_robot_with_masses
@@ -46,19 +47,23 @@ def read_tree(
     limits: JointLimits | None = None,
     notes: list[str] | None = None,
 ) -> dict[str, Any]:
-    """The arguments of a Robot; see Robot.from_urdf(). notes: list for the texts of warnings."""
+    """The arguments of a Robot; see Robot.from_urdf(). notes: list for the texts of warnings, instead of warnings."""
     name = os.fsdecode(path)
     if base is not None and base not in BASES:
         raise not_one_of("base", base, BASES)
+    said: list[str] = [] if notes is None else notes
     try:
         links, every, masses = read_robot_with_masses(name)
         above = tree_of(links, every)
         held = _held(above, every, dict(locked or {}), tips)
-        return _robot(above, every, masses, held, base, limits, [] if notes is None else notes)
+        robot = _robot(above, every, masses, held, base, limits, said)
     except ParameterError:
         raise
     except ValueError as error:
         raise ValueError(f"{name}: {error}") from None
+    if notes is None:
+        warn(path, said, 4)
+    return robot
 
 
 def _held(
