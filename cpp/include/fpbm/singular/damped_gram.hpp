@@ -202,7 +202,7 @@ class DampedGram {
 
   /// Round-off error of LostDirections::fade times radius². `fpbm_tests --gtest_filter='Spectra*secondary*'` prints
   /// 4e-12 with 0, and 1e-13 with 4 to 64 ε_machine.
-  static constexpr auto kRoundOff = 16 * std::numeric_limits<Number<Scalar>>::epsilon();
+  static constexpr auto kRoundOff = 1600 * std::numeric_limits<Number<Scalar>>::epsilon();
 
   SingularDamping<Scalar> damping_;
   const Matrix<M, N, Scalar>& J_;
