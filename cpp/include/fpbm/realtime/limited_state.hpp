@@ -215,8 +215,9 @@ class LimitedState {
         if (fraction < Scalar(1)) desired = slowed(field);
       }
     }
-    const bool evaluates = !kSecondOrder && !failed(result.status) &&
-                           (has_lower_levels(loop.kinematics) || one_acceleration || is_nearly_at_rest(result));
+    const bool several = has_lower_levels(loop.kinematics);
+    const bool evaluates =
+        !kSecondOrder && !failed(result.status) && (several || one_acceleration || is_nearly_at_rest(result));
     if constexpr (!kSecondOrder) {
       if (evaluates) {
         result.status = worse(result.status, tick_.evaluate_middle(loop, correction_(ahead(now, dt() / 2)), desired));
@@ -231,12 +232,11 @@ class LimitedState {
       // tip.
       loop.arm.kinematics(tick_.middle_of(next.q), loop.kinematics);
     }
-    JointVector u;
+    JointVector first = desired;
     if constexpr (kHasLevels) {
-      u = limited_motion(loop.kinematics, desired, several ? slowed(loop.first) : desired, rows, result);
-    } else {
-      u = limited_motion(loop.kinematics, desired, desired, rows, result);
+      if (several) first = slowed(loop.first);
     }
+    const JointVector u = limited_motion(loop.kinematics, desired, first, rows, result);
     if (fraction < Scalar(1)) {
       multiply_scale(result, fraction);
       result.status = worse(result.status, Status::kSlowed);
