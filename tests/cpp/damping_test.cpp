@@ -505,7 +505,8 @@ TYPED_TEST(Spectra, have_secondary_motion_without_task_motion) {
   }
   EXPECT_LE(errors.task, 256.0 * Fixture::kEpsilon);
   EXPECT_LE(errors.definition, 64.0);
-  std::printf("|J u|/(|J| |z|): %.1e, error of the projection: %.1e epsilon/radius^2\n", errors.task, errors.definition);
+  std::printf("|J u|/(|J| |z|): %.1e, error of the projection: %.1e epsilon/radius^2\n", errors.task,
+              errors.definition);
 }
 
 /// σ_min/√M ≤ bound ≤ σ_min, and the bound is 0 if a direction is lost.

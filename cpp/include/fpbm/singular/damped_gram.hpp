@@ -197,11 +197,11 @@ class DampedGram {
     return status == Status::kOk ? Status::kDamped : status;
   }
 
-  /// Smallest σ_min(JC)/‖JC‖ with which the null space of JC is known, within a factor √M. With x = ε_machine ‖JC‖/σ_min,
-  /// one projection has an error of about x, which moves the tip, and two projections have an error of x³: the
-  /// projection removes the error in all directions but the lost one, and is repeated with the remaining error. With 4
-  /// to 128 ε_machine, `fpbm_tests --gtest_filter='Spectra*secondary*'` prints the same errors. Below 32 ε_machine,
-  /// LostDirections::fade is less than 1e-4 for all radii from 32 √ε_machine, so that the omission of z is no jump.
+  /// Smallest σ_min(JC)/‖JC‖, up to a factor √M, with which the null space of JC is known. With x = ε_machine
+  /// ‖JC‖/σ_min, the task motion of one projection is about x of |z|, and of two projections x³, because each
+  /// projection leaves x of the motion along the lost direction. With 4 and 32, `fpbm_tests
+  /// --gtest_filter='Spectra*secondary*'` prints the same errors. If z is omitted, LostDirections::fade is below 300 M
+  /// ε_machine for each radius from 32 √ε_machine.
   static constexpr auto kUnknown = 32 * std::numeric_limits<Number<Scalar>>::epsilon();
 
   SingularDamping<Scalar> damping_;

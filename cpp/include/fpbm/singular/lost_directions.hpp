@@ -46,10 +46,11 @@ struct LostDirections {
   }
 
  private:
-  /// Fraction of ε below which secondary motion fades, less than 1 so that φ has two continuous derivatives where damping
-  /// begins. While φ < 1, secondary motion hardly leads an arm away from a singular posture: with 1,
-  /// test_unreachable_target_stops_and_returns in Python stays near the outstretched posture, and returns by a recovery;
-  /// with 0.1 and less, it returns by itself. Secondary motion turns within kFade ε: a smaller value makes it steeper.
+  /// Fraction of ε below which secondary motion fades, less than 1 so that φ has two continuous derivatives where
+  /// damping begins. While φ < 1, secondary motion hardly leads an arm away from a singular posture: with 1,
+  /// test_unreachable_target_stops_and_returns in Python stays near the outstretched posture, and returns by a
+  /// recovery; with 0.1 and less, it returns by itself. Secondary motion turns within kFade ε: a smaller value makes it
+  /// steeper.
   static constexpr Scalar kFade = Scalar(0.1);
 
   /// ‖Jᵀu‖².
