@@ -327,7 +327,9 @@ class LimitedState {
 
   /// Whether a tick at velocity level is limited although the arm hardly moves and no direction is damped: secondary
   /// motion presses joints against bounds. The mean velocity of an RK4 step is then of a motion that the bounds do not
-  /// admit, and would move the tip by the order of h² times the cube of this motion.
+  /// admit, and would move the tip by the order of h² times the cube of this motion. If the joints move by d = 1e-5 rad
+  /// in a tick, one evaluation in the middle of the tick has an error of about d³/24 of the length of the arm, 4e-17,
+  /// which is less than the round-off error: nothing is lost without RK4.
   [[nodiscard]] bool is_nearly_at_rest(const Result& result) const noexcept {
     return result.status == Status::kOk && largest_magnitude(tick_.joints.qd) * dt() < Scalar(1e-5);
   }

@@ -97,7 +97,7 @@ class DampedGram {
     } else {
       if (status == Status::kOk && regular) return status;
       if constexpr (kTurns == 0) rows_ = rows;
-      return damped(threshold, status);
+      return damped(threshold, bound, status);
     }
   }
 
@@ -123,7 +123,7 @@ class DampedGram {
     }
     /// Projection of a on the null space of JC, times LostDirections::fade, which is zero in a singular posture. The
     /// product is continuous, although the projection is not continuous in a singular posture (docs/singularities.md,
-    /// Secondary motion). The second projection removes the round-off error of the first, ε_machine ‖J‖/σ_min.
+    /// Secondary motion). The second projection removes the round-off error of the first (kUnknown).
     [[nodiscard]] Vector<N, Value> secondary(const Vector<N, Value>& a) const noexcept {
       if (!(of.fade_ > Scalar(0))) return filled<Vector<N, Value>>(a.size());
       const Vector<N, Value> projected = of.factor_.project(of.factor_.project(a));
@@ -172,20 +172,17 @@ class DampedGram {
     return scaled;
   }
 
-  [[nodiscard, gnu::noinline]] Status damped(Scalar threshold, Status undamped) noexcept {
-    Matrix<M, M, Scalar> even = gram_of(J_);
+  [[nodiscard, gnu::noinline]] Status damped(Scalar threshold, Scalar bound, Status undamped) noexcept {
+    Matrix<M, N, Scalar> even = J_;
     const Eigen::Index m = J_.rows();
     for (Eigen::Index i = lengths(); i < m; ++i) {
-      for (Eigen::Index j = 0; j < m; ++j) even(j, i) *= length_;
+      for (Eigen::Index j = 0; j < extent<N>(even.cols()); ++j) even.coeffRef(i, j) *= length_;
     }
-    for (Eigen::Index i = lengths(); i < m; ++i) {
-      for (Eigen::Index j = 0; j < m; ++j) even(i, j) *= length_;
-    }
-    const LostDirections<M, Scalar> lost(even, threshold);
+    const LostDirections<M, Scalar> lost(gram_of(even), even, threshold);
     lost_ = lost.count;
-    // σ² has a round-off error of a few ε_machine ‖J‖². If σ² is not larger, the null space of JC is unknown.
-    const Scalar round_off = kRoundOff / (damping_.radius() * damping_.radius());
-    fade_ = lost.fade > round_off ? lost.fade : Scalar(0);
+    const Scalar round_off = kUnknown / damping_.radius();
+    const bool known = Value(Scalar(1)) > Value(round_off * round_off * bound) * factor_.inverse_trace();
+    fade_ = known ? lost.fade : Scalar(0);
     if (!(lost_ > Scalar(0))) return undamped;
     Matrix<M, M, Value> gram;  // Lower triangle.
     gram.resize(m, m);
@@ -200,9 +197,12 @@ class DampedGram {
     return status == Status::kOk ? Status::kDamped : status;
   }
 
-  /// Round-off error of LostDirections::fade times radius². `fpbm_tests --gtest_filter='Spectra*secondary*'` prints
-  /// 4e-12 with 0, and 1e-13 with 4 to 64 ε_machine.
-  static constexpr auto kRoundOff = 1600 * std::numeric_limits<Number<Scalar>>::epsilon();
+  /// Smallest σ_min(JC)/‖JC‖, up to a factor √M, with which the null space of JC is known. With x = ε_machine
+  /// ‖JC‖/σ_min, the task motion of one projection is about x of |z|, and of two projections x³, because each
+  /// projection leaves x of the motion along the lost direction. With 4 and 32, `fpbm_tests
+  /// --gtest_filter='Spectra*secondary*'` prints the same errors. If z is omitted, LostDirections::fade is below 300 M
+  /// ε_machine for each radius from 32 √ε_machine.
+  static constexpr auto kUnknown = 32 * std::numeric_limits<Number<Scalar>>::epsilon();
 
   SingularDamping<Scalar> damping_;
   const Matrix<M, N, Scalar>& J_;

@@ -41,7 +41,7 @@ class DampedLevel {
     if (!dependent && epsilon_squared_ * squared_norm_of_inverse(L) <= Scalar(1)) return false;
     const Matrix<M, M, Scalar> gram = dependent ? gram_of_columns(L, columns) : lower_gram(L);
     Cholesky<M, Scalar> cholesky;
-    const LostDirections<M, Scalar> directions(gram, epsilon_squared_);
+    const LostDirections<M, Scalar> directions(gram, dependent ? transpose_of(L) : L, epsilon_squared_);
     if (!(directions.count > Scalar(0))) return false;
     if (cholesky.factor(sum_of(gram, directions.delta)) != Status::kOk) return false;
     lost_ += directions.count;

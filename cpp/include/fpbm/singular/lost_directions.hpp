@@ -2,6 +2,8 @@
 
 #include "fpbm/linalg/cholesky.hpp"
 #include "fpbm/linalg/eigenpairs_below.hpp"
+#include "fpbm/linalg/product.hpp"
+#include "fpbm/linalg/sums.hpp"
 
 namespace fpbm {
 
@@ -20,16 +22,18 @@ struct LostDirections {
   Scalar fade{1};  ///< Π φ(σᵢ/(kFade ε)), φ(s) = 1 − (1 − s²)³ for s < 1, otherwise 1. 0 in a singular posture.
   Matrix<M, M, Scalar> delta;  ///< Δ
 
-  /// gram: G. Only the lower triangle is read.
-  LostDirections(const Matrix<M, M, Scalar>& gram, Scalar epsilon_squared) noexcept
+  /// gram: G. Only the lower triangle is read. rows: J. N: number of columns of J.
+  template <int N>
+  LostDirections(const Matrix<M, M, Scalar>& gram, const Matrix<M, N, Scalar>& rows, Scalar epsilon_squared) noexcept
       : delta(filled<Matrix<M, M, Scalar>>(gram.rows())) {
     if (none_is_lost(gram, epsilon_squared)) return;
     const EigenpairsBelow<M, Scalar> lost(gram, epsilon_squared);
     for (Eigen::Index i = 0; i < lost.count(); ++i) {
       if (!(lost.value(i) < epsilon_squared)) continue;
       const Vector<M, Scalar> u = lost.vector(i);
-      // uᵀGu has a smaller round-off error than the eigenvalue from QL steps.
-      const Scalar gap = Scalar(1) - quadratic_form(gram, u) / epsilon_squared;
+      // σ = ‖Jᵀu‖ has the round-off error ε_machine ‖J‖. The eigenvalue has the round-off error ε_machine ‖J‖², and σ
+      // from the eigenvalue would have √ε_machine ‖J‖.
+      const Scalar gap = Scalar(1) - squared_motion(rows, u) / epsilon_squared;
       if (!(gap > Scalar(0))) continue;
       const Scalar weight = gap < Scalar(1) ? gap * gap * gap : Scalar(1);
       for (Eigen::Index j = 0; j < gram.rows(); ++j) {
@@ -42,19 +46,17 @@ struct LostDirections {
   }
 
  private:
-  /// Fraction of ε below which secondary motion fades. With 1, the arm of test_unreachable_target_stops_and_returns in
-  /// Python stays near its outstretched posture, and returns by a recovery; with 0.1 and less, it returns by itself.
+  /// Fraction of ε below which secondary motion fades, less than 1 so that φ has two continuous derivatives where
+  /// damping begins. While φ < 1, secondary motion hardly leads an arm away from a singular posture: with 1,
+  /// test_unreachable_target_stops_and_returns in Python stays near the outstretched posture, and returns by a
+  /// recovery; with 0.1 and less, it returns by itself. Secondary motion turns within kFade ε: a smaller value makes it
+  /// steeper.
   static constexpr Scalar kFade = Scalar(0.1);
 
-  /// uᵀGu
-  [[nodiscard]] static Scalar quadratic_form(const Matrix<M, M, Scalar>& gram, const Vector<M, Scalar>& u) noexcept {
-    Scalar sum(0);
-    for (Eigen::Index j = 0; j < gram.rows(); ++j) {
-      Scalar below(0);
-      for (Eigen::Index i = j + 1; i < gram.rows(); ++i) below += gram.coeff(i, j) * u.coeff(i);
-      sum += u.coeff(j) * (gram.coeff(j, j) * u.coeff(j) + Scalar(2) * below);
-    }
-    return sum;
+  /// ‖Jᵀu‖².
+  template <int N>
+  [[nodiscard]] static Scalar squared_motion(const Matrix<M, N, Scalar>& rows, const Vector<M, Scalar>& u) noexcept {
+    return squared_norm(transpose_times(rows, u));
   }
 
   /// Whether G − ε²I is positive definite, so that all σᵢ are above ε. Takes a small fraction of the time for the
