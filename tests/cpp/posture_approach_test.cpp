@@ -80,7 +80,7 @@ template <typename Scheme>
   if (jerk && !bounds.jerk.allFinite()) bounds.jerk = random.uniform(50.0, 500.0) * bounds.acceleration;
   const Limits<Scheme::kLevel, N> limits(bounds, h);
   const Vector<N> q0 = posture_within(bounds, random);
-  const Vector<N> target = posture_within(bounds, random);
+  Vector<N> target = posture_within(bounds, random);
   TrackerOptions<> options;
   options.dt = h;
   // A posture of all joints on the first level.
@@ -89,6 +89,10 @@ template <typename Scheme>
   auto tracker = stack_tracker(robot, Stack(AnyPostureTask(joints, gains)), scheme,
                                State<N>{q0, Vector<N>::Zero(q0.size())}, options, limits);
   auto reference = decltype(tracker)::Target::hold(tracker.tip());
+  // A continuous joint moves by at most half a turn.
+  for (Eigen::Index i = 0; i < q0.size(); ++i) {
+    if ((tracker.continuous() >> i & 1U) != 0) target(i) += whole_turns(q0(i) - target(i));
+  }
   double least = 0.0;
   double distance = 0.0;
   for (Eigen::Index i = 0; i < q0.size(); ++i) {
