@@ -76,14 +76,16 @@ class LowerLevels {
   template <typename JointVector>
   void end_tick(bool follows, const JointVector& qd, Scalar distance_sum, Scalar length) noexcept {
     if (!follows) return release();
-    if (any_stopped_ && shapes_.moved(largest_magnitude(qd) <= kRest, distance_sum, kMoved * length)) release();
+    if (!any_stopped_) return;
+    at_rest_ = largest_magnitude(qd) <= kRest;
+    if (shapes_.moved(at_rest_, distance_sum, kMoved * length)) release();
   }
 
   /// Resets the detection: all tasks follow their references.
   void release() noexcept {
     stopped_.fill(false);
     held_.fill(false);
-    any_stopped_ = reached_ = displaced_ = false;
+    any_stopped_ = at_rest_ = reached_ = displaced_ = false;
     shapes_.reset();
     least_.fill(std::numeric_limits<Scalar>::infinity());
     peak_.fill(Scalar(0));
@@ -149,8 +151,8 @@ class LowerLevels {
     quiet_ = settled ? quiet_ + 1 : 0;
   }
 
-  /// Until a stopped task is at rest, or until the end of the next window, its current point is its reference: the task
-  /// brakes. Then the task holds its point.
+  /// Until a stopped task and the joints are at rest, or until the end of the next window, its current point is its
+  /// reference: the task brakes. Then the task holds its point.
   template <std::size_t kIndex, typename Part, typename PartPoint>
   void hold_at_rest(const PartPoint& tip, Scalar length) noexcept {
     const Scalar moved = TaskDistance<Part, Scalar>::between(tip, std::get<kIndex>(point_), length);
@@ -158,7 +160,7 @@ class LowerLevels {
       displaced_ = displaced_ || (reached_ && moved > kSmall / Scalar(4));
       return;
     }
-    held_[kIndex] = moved <= kHold * dt_;
+    held_[kIndex] = at_rest_ && moved <= kHold * dt_;
     std::get<kIndex>(point_) = tip;
   }
 
@@ -183,6 +185,7 @@ class LowerLevels {
   Scalar dt_;
   Scalar time_;  ///< Since the start of the window [s].
   bool any_stopped_;
+  bool at_rest_;    ///< Whether the joints were at rest in the last tick with a stopped task.
   bool reached_;    ///< Whether the tasks of the first level were at their targets in the last window.
   bool displaced_;  ///< Whether a stopped task has left its point while the first level was at its target.
   int quiet_;       ///< Windows since the last stop or approach of a task.
