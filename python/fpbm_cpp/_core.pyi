@@ -641,7 +641,7 @@ class Tracker:
         level.
     error_bound : float
         Largest tip error that the feedback uses: of the position in arm lengths (from the first joint to the tip, along the
-        links), of the orientation [rad].
+        links), of the orientation [rad]. The limits determine the largest error of the joints of a PostureTask.
     integral_gain, integral_bound : float
         Gain of the integral of the error, [1/s^3] or [1/s^2] at velocity level; 0: no integral. Largest contribution of the
         integral [arm lengths and radians per s^2, or per s]. A gain below k1 k2 is stable.

@@ -77,10 +77,11 @@ template <typename Scheme>
                                 Random& random) {
   JointLimits<N> bounds = robot.limits();
   const bool jerk = random.uniform(0.0, 1.0) < 0.5;
-  if (jerk && !bounds.jerk.allFinite()) bounds.jerk = random.uniform(50.0, 500.0) * bounds.acceleration;
+  const double jerk_time = random.uniform(0.0, 1.0) < 0.5 ? 1.0 / 30.0 : 1.0 / random.uniform(50.0, 500.0);
+  if (jerk && !bounds.jerk.allFinite()) bounds.jerk = bounds.acceleration / jerk_time;
   const Limits<Scheme::kLevel, N> limits(bounds, h);
   const Vector<N> q0 = posture_within(bounds, random);
-  const Vector<N> target = posture_within(bounds, random);
+  Vector<N> target = posture_within(bounds, random);
   TrackerOptions<> options;
   options.dt = h;
   // A posture of all joints on the first level.
@@ -89,6 +90,10 @@ template <typename Scheme>
   auto tracker = stack_tracker(robot, Stack(AnyPostureTask(joints, gains)), scheme,
                                State<N>{q0, Vector<N>::Zero(q0.size())}, options, limits);
   auto reference = decltype(tracker)::Target::hold(tracker.tip());
+  // A continuous joint moves by at most half a turn.
+  for (Eigen::Index i = 0; i < q0.size(); ++i) {
+    if ((tracker.continuous() >> i & 1U) != 0) target(i) += whole_turns(q0(i) - target(i));
+  }
   double least = 0.0;
   double distance = 0.0;
   for (Eigen::Index i = 0; i < q0.size(); ++i) {
@@ -148,6 +153,10 @@ TEST(PostureApproach, needs_at_most_twice_the_least_time_at_velocity_level) {
   expect_near_least_time(MVN<N>(), TaskGains<>(10.0));
 }
 
+/// Largest error of the tip [m]: about twice the error of the motions below, 2.2e-5 m at velocity level and 3.4e-8 m at
+/// acceleration level. The integration of a tick causes this error (docs/tasks.md, Limitations).
+constexpr double kTipError = 5e-5;
+
 /// The posture on the second level: the tip stays, and the joints reach a posture with the same tip.
 template <typename Scheme>
 void expect_tip_to_stay(const Scheme& scheme, const TaskGains<>& gains) {
@@ -173,7 +182,7 @@ void expect_tip_to_stay(const Scheme& scheme, const TaskGains<>& gains) {
     run(5.0);
     EXPECT_LT((tracker.state().q - there).norm(), 1e-3);
     EXPECT_GT((there - q0).norm(), 0.1);
-    EXPECT_LT(away, 5e-5);
+    EXPECT_LT(away, kTipError);
     std::printf("tip away by at most %.1e m\n", away);
   }
 }

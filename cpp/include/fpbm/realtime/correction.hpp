@@ -14,8 +14,9 @@ namespace fpbm {
 
 /// Corrects the reference of a loop before the scheme uses it. If the error exceeds options.error_bound, the target is
 /// moved toward the tip until the error equals error_bound, separately for the position and the orientation (Buss
-/// 2004). The integral of the error, times integral_gain, is added to the acceleration of the reference, or to the
-/// velocity at velocity level (docs/realtime.md, Integral of the error).
+/// 2004). For the joints of a posture task, see reduce() and JointApproach. The integral of the error, times
+/// integral_gain, is added to the acceleration of the reference, or to the velocity at velocity level
+/// (docs/realtime.md, Integral of the error).
 template <Level kLevel, typename Space, typename Scalar = double>
 class Correction {
  public:
@@ -63,7 +64,7 @@ class Correction {
     far_ = far_ || first;
   }
 
-  /// Whether a target of the first level is beyond error_bound.
+  /// Whether the feedback uses only a part of an error of the first level.
   [[nodiscard]] bool far() const noexcept { return far_; }
   /// Whether the correction changes a reference.
   [[nodiscard]] bool active() const noexcept { return moved_ || gain_ != Scalar(0); }

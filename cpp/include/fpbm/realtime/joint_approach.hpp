@@ -71,12 +71,14 @@ struct JointApproach {
 
 /// Deceleration with which joint i approaches the target of a posture task. At velocity level, the limiter changes
 /// velocities that are a tick of full acceleration away: with a bound on jerk, this change has a smaller acceleration.
+/// 0.95 of this acceleration: PostureApproach.needs_at_most_twice_the_least_time_at_velocity_level needs 2.03 times the
+/// least time with 0.8, and has an overshoot of 0.02 with 1.
 template <Level kLevel, int N, typename Scalar>
 [[nodiscard]] Scalar approach_deceleration(const Limits<kLevel, N, Scalar>& limits, int i) noexcept {
-  constexpr Scalar kFraction = Scalar(0.8);  // The remaining acceleration corrects deviations from v.
   const Scalar most = limits.bounds().acceleration.coeff(i);
-  if (kLevel == Level::kAcceleration || !limits.bounds_jerk(i)) return kFraction * most;
-  return kFraction * std::min(most, limits.jerk_limited(i).change(most * limits.tick()));
+  const Scalar part = Scalar(0.8) * most;  // The remaining acceleration corrects deviations from v.
+  if (kLevel == Level::kAcceleration || !limits.bounds_jerk(i)) return part;
+  return std::min(part, Scalar(0.95) * limits.jerk_limited(i).change(most * limits.tick()));
 }
 
 /// Reduces the errors of the posture tasks of a stack by the smallest fraction of all joints (JointApproach), so that

@@ -24,7 +24,8 @@ namespace fpbm {
 /// task makes progress if its error is below 15/16 of the errors of all earlier windows. A task of a lower level stops
 /// if it makes no progress, its error exceeds 0.0001, no target has moved by 0.002 (TaskDistance), and no task makes
 /// progress of more than 0.002. A stopped task brakes: its reference is its current point at zero velocity, until the
-/// task is at rest or the next window ends. Then the task holds this point.
+/// task is at rest or the next window ends. Then the task holds this point. If the task leaves this point by more than
+/// 0.000025 while the first level is at its target, all joints brake.
 ///
 /// All tasks follow their references again if a target of any level or a shape near the arm moves, and after a tick
 /// that does not follow the references.
@@ -57,9 +58,10 @@ class LowerLevels {
     return true;
   }
 
-  /// Whether all joints should brake: tasks have stopped, and no task has approached its target for kQuiet windows.
-  /// Otherwise, null-space motion could continue for minutes.
-  [[nodiscard]] bool rests() const noexcept { return quiet_ >= kQuiet; }
+  /// Whether all joints should brake: tasks have stopped, and no task has approached its target for kQuiet windows, or
+  /// a stopped task has left its point. Otherwise, null-space motion could continue for minutes, or a limit cycle of
+  /// the limits could move a stopped task.
+  [[nodiscard]] bool rests() const noexcept { return quiet_ >= kQuiet || displaced_; }
 
   /// Sets the scale of each level with a stopped task to 0.
   template <typename... Levels, int N>
@@ -74,14 +76,16 @@ class LowerLevels {
   template <typename JointVector>
   void end_tick(bool follows, const JointVector& qd, Scalar distance_sum, Scalar length) noexcept {
     if (!follows) return release();
-    if (any_stopped_ && shapes_.moved(largest_magnitude(qd) <= kRest, distance_sum, kMoved * length)) release();
+    if (!any_stopped_) return;
+    at_rest_ = largest_magnitude(qd) <= kRest;
+    if (shapes_.moved(at_rest_, distance_sum, kMoved * length)) release();
   }
 
   /// Resets the detection: all tasks follow their references.
   void release() noexcept {
     stopped_.fill(false);
     held_.fill(false);
-    any_stopped_ = false;
+    any_stopped_ = at_rest_ = reached_ = displaced_ = false;
     shapes_.reset();
     least_.fill(std::numeric_limits<Scalar>::infinity());
     peak_.fill(Scalar(0));
@@ -112,7 +116,11 @@ class LowerLevels {
       target_ = target;
       return release();
     }
-    if (displacements != displacements_) quiet_ = 0;
+    if (displacements != displacements_) {
+      held_.fill(false);
+      reached_ = displaced_ = false;
+      quiet_ = 0;
+    }
     displacements_ = displacements;
     time_ += dt_;
     if (time_ > stall_time_) end_window();
@@ -123,6 +131,7 @@ class LowerLevels {
   void end_window() noexcept {
     bool progress = false;
     bool settled = any_stopped_;
+    reached_ = std::all_of(peak_.begin(), peak_.begin() + Space::kFirst, [](Scalar peak) { return peak == Scalar(0); });
     for (std::size_t i = 0; i < kTasks; ++i) {
       const bool approaches = peak_[i] < (Scalar(1) - kApproach) * least_[i];
       progress = progress || (approaches && peak_[i] < least_[i] - kMoved);
@@ -142,13 +151,16 @@ class LowerLevels {
     quiet_ = settled ? quiet_ + 1 : 0;
   }
 
-  /// Until a stopped task is at rest, or until the end of the next window, its current point is its reference: the task
-  /// brakes. Then the task holds its point.
+  /// Until a stopped task and the joints are at rest, or until the end of the next window, its current point is its
+  /// reference: the task brakes. Then the task holds its point.
   template <std::size_t kIndex, typename Part, typename PartPoint>
   void hold_at_rest(const PartPoint& tip, Scalar length) noexcept {
-    if (held_[kIndex]) return;
     const Scalar moved = TaskDistance<Part, Scalar>::between(tip, std::get<kIndex>(point_), length);
-    held_[kIndex] = moved <= kRest * dt_;
+    if (held_[kIndex]) {
+      displaced_ = displaced_ || (reached_ && moved > kSmall / Scalar(4));
+      return;
+    }
+    held_[kIndex] = at_rest_ && moved <= kHold * dt_;
     std::get<kIndex>(point_) = tip;
   }
 
@@ -156,9 +168,12 @@ class LowerLevels {
   /// Smallest displacement of a target or of shapes that counts, and smallest progress that counts, as
   /// TaskDistance::kProgress.
   static constexpr Scalar kMoved = Scalar(2e-3);
-  /// Largest joint velocity [rad/s] or task velocity [lengths/s, rad/s] at rest, as in the tests of stacks.
+  /// Largest joint velocity [rad/s] at rest, as in the tests of stacks.
   static constexpr Scalar kRest = Scalar(1e-3);
   static constexpr Scalar kSmall = Scalar(1e-4);  ///< As in StallDetector: 0.1 mm for an arm of 1 m.
+  /// Largest task velocity [lengths/s, rad/s] of a stopped task that begins to hold its point. With 0.001, a motion of
+  /// LowerLevels.stay_where_they_stopped_at_acceleration_level ends 1.4e-4 from its point, and with 0.0001, 2.5e-5.
+  static constexpr Scalar kHold = Scalar(1e-4);
   /// Relative decrease of the error that counts as progress, as for a crawling arm (StallDetector). An error that
   /// decreases by 1/16 in each window of 2 s is 1 % of its start after 143 s.
   static constexpr Scalar kApproach = Scalar(1) / Scalar(16);
@@ -170,7 +185,10 @@ class LowerLevels {
   Scalar dt_;
   Scalar time_;  ///< Since the start of the window [s].
   bool any_stopped_;
-  int quiet_;                         ///< Windows since the last stop or approach of a task.
+  bool at_rest_;    ///< Whether the joints were at rest in the last tick with a stopped task.
+  bool reached_;    ///< Whether the tasks of the first level were at their targets in the last window.
+  bool displaced_;  ///< Whether a stopped task has left its point while the first level was at its target.
+  int quiet_;       ///< Windows since the last stop or approach of a task.
   Scalar displacements_ = Scalar(0);  ///< Sum of the displacements of the targets from target_.
   std::array<bool, kTasks> stopped_;
   std::array<bool, kTasks> held_;      ///< Stopped tasks that hold their points.

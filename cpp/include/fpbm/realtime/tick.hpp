@@ -53,8 +53,9 @@ template <typename Scalar = double>
 struct TrackerOptions {
   Scalar dt = Scalar(1e-3);  ///< Length of a tick [s]. Default: the rate of libfranka.
   /// Largest error that the feedback uses, of the position [characteristic lengths of the arm] and of the orientation
-  /// [rad]. A larger error, for example of an unreachable target, does not increase the feedback. Default:
-  /// Stall.is_not_a_slow_approach passes with 0.1 to 1, and fails with 0.03.
+  /// [rad]. A larger error, for example of an unreachable target, does not increase the feedback. The bounds on the
+  /// joints determine the largest error of a posture task (JointApproach). Default: Stall.is_not_a_slow_approach passes
+  /// with 0.1 to 1, and fails with 0.03.
   Scalar error_bound = Scalar(0.1);
   /// Gain kᵢ of ∫(x ⊖ f(q)) dt, which is added to the acceleration [1/s³] or velocity [1/s²] of the reference. The
   /// integral removes the steady-state error due to a constant bias (PID feedback: Guo et al. 2018). At acceleration
