@@ -159,8 +159,9 @@ class NullSpaceSaturation {
   static constexpr int kPasses = 3;
   /// Largest null-space motion of limit_compensation(), relative to the largest entry of desired − rest. If a joint on
   /// its bound hardly moves in the null space, the other joints would have to move by whole units to hold back 1e-8 of
-  /// a unit, with a sign that changes from tick to tick (StackRest.a_joint_on_its_bound*). With 1e4, tests of
-  /// `LevelSaturation*` have scales below their optimum by more than 1e-6; with 1e5 to 1e7, all tests pass.
+  /// a unit, with a sign that changes from tick to tick. StackRest.a_joint_on_its_bound_causes_no_pulses passes with
+  /// 1e5 and 1e6, and fails with 1e7. With 1e4, tests of `LevelSaturation*` fail: scales are below their optimum by
+  /// more than 1e-6.
   static constexpr Scalar kLargestCompensation = Scalar(1e6);
   /// A rate up to this fraction of the largest rate is round-off error: a joint with a smaller rate does not move.
   /// Range: ε to 1000 ε. With 16,000 ε, a motion leaves the line of the task.
