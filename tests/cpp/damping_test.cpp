@@ -94,7 +94,7 @@ struct Expected {
 };
 
 /// The laws as printed, with damped J⁺ and J_W⁺, and the brake in z. The part of z that depends on the posture becomes
-/// free_motion().
+/// free_motion(), or, if the command b is beyond the lost directions, has the damped projection.
 Expected damped(const Law& law, const Situation& at) {
   const auto alpha = static_cast<Real>(law.alpha);
   const RealMatrix even = at.units.asDiagonal() * at.J;
@@ -114,7 +114,12 @@ Expected damped(const Law& law, const Situation& at) {
   const RealVector spring = secondary(law, at_rest);
   RealVector z = secondary(law, at) - spring;
   RealVector rate = RealVector::Zero(at.q.size());
-  const RealVector free = free_motion(even, real(law.W), law.singular_radius, spring);
+  const RealVector command = lost * (at.units.asDiagonal() * b);
+  const Real size_of_spring = std::sqrt((spring.transpose() * inverse(Winv) * spring).value()) + 1;
+  const Real t = command.norm() / (edge * size_of_spring);
+  const Real beyond = std::clamp((t * t - 1) / 3, Real(0), Real(1));
+  const RealVector free = (1 - beyond) * free_motion(even, real(law.W), law.singular_radius, spring) +
+                          beyond * (spring - JWp * at.J * spring);
   if (law.acceleration) {
     z -= static_cast<Real>(law.singular_brake) * lost.trace() * at.qd;
     rate = alpha * Winv * at.Jd.transpose() * damped_inverse * at.xd;

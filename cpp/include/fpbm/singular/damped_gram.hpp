@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -121,13 +122,22 @@ class DampedGram {
       }
       return of.factor_.project(a);
     }
-    /// Projection of a on the null space of JC, times LostDirections::fade, which is zero in a singular posture. The
-    /// product is continuous, although the projection is not continuous in a singular posture (docs/singularities.md,
-    /// Secondary motion). The second projection removes the round-off error of the first (kUnknown).
-    [[nodiscard]] Vector<N, Value> secondary(const Vector<N, Value>& a) const noexcept {
-      if (!(of.fade_ > Scalar(0))) return filled<Vector<N, Value>>(a.size());
-      const Vector<N, Value> projected = of.factor_.project(of.factor_.project(a));
-      return entrywise(a, [&](Eigen::Index i) { return Value(of.fade_) * projected.coeff(i); });
+    /// Secondary motion a without task motion, for a commanded motion b: the projection of a on the null space of JC,
+    /// times LostDirections::fade, which is zero in a singular posture. The product is continuous, although the
+    /// projection is not continuous in a singular posture (docs/singularities.md, Secondary motion). The second
+    /// projection removes the round-off error of the first (kUnknown). If the command is beyond the lost directions
+    /// (beyond()), project(a) replaces this motion.
+    [[nodiscard]] Vector<N, Value> secondary(const Vector<N, Value>& a, const Vector<M, Scalar>& b) const noexcept {
+      const Scalar beyond = of.beyond(a, b);
+      const Scalar fade = (Scalar(1) - beyond) * of.fade_;
+      Vector<N, Value> result = filled<Vector<N, Value>>(a.size());
+      if (fade > Scalar(0)) {
+        const Vector<N, Value> projected = of.factor_.project(of.factor_.project(a));
+        result = entrywise(a, [&](Eigen::Index i) { return Value(fade) * projected.coeff(i); });
+      }
+      if (!(beyond > Scalar(0))) return result;
+      const Vector<N, Value> damped = project(a);
+      return entrywise(a, [&](Eigen::Index i) { return result.coeff(i) + Value(beyond) * damped.coeff(i); });
     }
     [[nodiscard]] Vector<N, Value> motion(const Vector<M, Value>& coefficients) const noexcept {
       if constexpr (kDamped) return product(of.rows_, coefficients);
@@ -172,6 +182,23 @@ class DampedGram {
     return scaled;
   }
 
+  /// Whether the command is beyond the lost directions, from 0 to 1 (docs/singularities.md, Secondary motion): with
+  /// t = |Δ b|/(ε³ (|a| + kUsual)), the result is (t² − 1)/3 within [0, 1].
+  [[nodiscard]] Scalar beyond(const Vector<N, Value>& a, const Vector<M, Scalar>& b) const noexcept {
+    Scalar command(0);
+    for (Eigen::Index i = 0; i < b.size(); ++i) {
+      Scalar lost(0);
+      for (Eigen::Index j = 0; j < b.size(); ++j) {
+        lost += delta_.coeff(i, j) * (j < lengths() ? b.coeff(j) : length_ * b.coeff(j));
+      }
+      command += lost * lost;
+    }
+    const Scalar size =
+        std::sqrt(first(entrywise(a, [&](Eigen::Index i) { return a.coeff(i) * a.coeff(i); }).sum())) + kUsual;
+    const Scalar most = threshold_ * threshold_ * threshold_ * size * size;
+    return command > most ? std::min((command - most) / (Scalar(3) * most), Scalar(1)) : Scalar(0);
+  }
+
   [[nodiscard, gnu::noinline]] Status damped(Scalar threshold, Scalar bound, Status undamped) noexcept {
     Matrix<M, N, Scalar> even = J_;
     const Eigen::Index m = J_.rows();
@@ -180,6 +207,8 @@ class DampedGram {
     }
     const LostDirections<M, Scalar> lost(gram_of(even), even, threshold);
     lost_ = lost.count;
+    delta_ = lost.delta;
+    threshold_ = threshold;
     const Scalar round_off = kUnknown / damping_.radius();
     const bool known = Value(Scalar(1)) > Value(round_off * round_off * bound) * factor_.inverse_trace();
     fade_ = known ? lost.fade : Scalar(0);
@@ -210,6 +239,12 @@ class DampedGram {
   Matrix<N, M, Value> rows_;       ///< (DJC)ᵀ. Not set if kTurns = 0 and the posture is regular.
   RowFactor<M, N, Value> factor_;  ///< Factorisation of DJC.
   Cholesky<M, Value> damped_;      ///< Factorisation of D(JW⁻¹Jᵀ)D + Δ, if Δ ≠ 0.
+  /// Usual size of a secondary motion [rad/s] or [rad/s²], with which a command is compared if z is small. Not tuned:
+  /// Tracker.stops_at_the_workspace_boundary_and_returns has |z| from 1 to 8.
+  static constexpr auto kUsual = Scalar(1);
+
+  Matrix<M, M, Scalar> delta_;     ///< Δ. Set only if the rows are nearly singular.
+  Scalar threshold_{0};            ///< ε². Set only if the rows are nearly singular.
   Scalar lost_{0};                 ///< tr Δ/ε², about the number of lost directions.
   Scalar fade_{1};                 ///< LostDirections::fade, or 0 if the null space of JC is not known.
 };
