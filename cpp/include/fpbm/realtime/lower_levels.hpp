@@ -24,8 +24,8 @@ namespace fpbm {
 /// task makes progress if its error is below 15/16 of the errors of all earlier windows. A task of a lower level stops
 /// if it makes no progress, its error exceeds 0.0001, no target has moved by 0.002 (TaskDistance), and no task makes
 /// progress of more than 0.002. A stopped task brakes: its reference is its current point at zero velocity, until the
-/// task is at rest or the next window ends. Then the task holds this point. If the task leaves this point by more than
-/// 0.000025 while the first level is at its target, all joints brake.
+/// task and the joints are at rest or the next window ends. Then the task holds this point. If the task leaves this
+/// point by more than 0.000025 while the first level is at its target, all joints brake.
 ///
 /// All tasks follow their references again if a target of any level or a shape near the arm moves, and after a tick
 /// that does not follow the references.
