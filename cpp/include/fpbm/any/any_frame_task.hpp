@@ -19,7 +19,9 @@ namespace fpbm {
 /// Coordinates that a task controls: coordinates of a frame, or the position of the centre of mass, which has no frame.
 enum class FrameCoordinates { kPosition, kOrientation, kPose, kAxis, kCenterOfMass };
 
-/// Largest distance of a rotation from π [rad] at which FrameSpace::turn_fraction() reduces an error.
+/// Largest distance of a rotation from π [rad] at which FrameSpace::turn_fraction() reduces an error. The value
+/// is a choice: the error at angle φ is φ (π − φ)/kTurnBand, which changes by at most π/kTurnBand = 6.3 times as much
+/// as φ, so that the gain of the feedback increases by at most this factor.
 template <typename Scalar>
 inline constexpr Scalar kTurnBand = Scalar(0.5);
 /// Selected rotation error [rad] above which a reduced error counts as slowed.

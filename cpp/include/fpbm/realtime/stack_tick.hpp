@@ -15,7 +15,8 @@ namespace fpbm {
 
 /// Result of a tick of a stack. status, scale and sigma describe the first level, except that status is kSlowed if only
 /// a lower level is slowed. error: x ⊖ f(q) of each task. A coordinate that a task does not select has no error
-/// (task_error).
+/// (task_error). A rotation error with free rotations near π is reduced (FrameSpace::turn_fraction()): at π, it is 0
+/// although the target is not reached, and the scale of the level is below 1.
 template <typename... Levels, int N, typename Scalar>
 struct Tick<StackSpace<Levels...>, N, Scalar> : TickOfRows<StackSpace<Levels...>::kRows, N, Scalar> {
   /// Task scale of each level; 0 if a task of the level has stopped (LowerLevels) or has no finite reference. scales[0]
