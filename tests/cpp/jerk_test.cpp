@@ -452,7 +452,8 @@ TEST(Jerk, invalid_bounds_are_rejected) {
   EXPECT_EQ(complaint([&] {
               limits.require_viable({still, Vector<2>(1.9, 0.0)}, Vector<2>(9.0, 0.0));
             }),
-            "qd0[0] = 1.9: must be slow enough for the joint to stop within its bounds");
+            "qd0[0] = 1.9: must be slow enough for the joint to stop within its bounds, or give recover_start = true, "
+            "with which the joint returns");
 }
 
 }  // namespace

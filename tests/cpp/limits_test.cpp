@@ -409,11 +409,13 @@ TEST(Limits, name_the_invalid_bound) {
   EXPECT_EQ(complaint([&] {
               limits.require_viable({Vector<2>(0.0, 1.5), Vector<2>::Zero()});
             }),
-            "q0[1] = 1.5: must be within the joint's range, from -1 to 1");
+            "q0[1] = 1.5: must be within the joint's range, from -1 to 1, or give recover_start = true, with which the "
+            "joint returns");
   EXPECT_EQ(complaint([&] {
               limits.require_viable({Vector<2>(0.0, 0.9), Vector<2>(0.0, 1.5)});
             }),
-            "qd0[1] = 1.5: must be slow enough for the joint to stop within its bounds");
+            "qd0[1] = 1.5: must be slow enough for the joint to stop within its bounds, or give recover_start = true, "
+            "with which the joint returns");
 }
 
 }  // namespace

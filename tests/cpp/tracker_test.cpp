@@ -453,7 +453,8 @@ TEST(Tracker, names_the_invalid_argument) {
   Vector<7> q0 = bent();
   q0(3) = 0.5;
   EXPECT_EQ(complaint([&] { CompiledTracker(panda(), Pose{}, settling(), q0); }),
-            "q0[3] = 0.5: must be within the joint's range, from -3.0718 to -0.0698");
+            "q0[3] = 0.5: must be within the joint's range, from -3.0718 to -0.0698, or give recover_start = true, "
+            "with which the joint returns");
   Chain<> chain = panda_without_jerk();
   for (Joint<>& joint : chain.joints) joint.bounds.acceleration = JointBounds<>::kNone;
   const SerialArm<7> unbounded(chain);

@@ -243,10 +243,10 @@ class DampedGram {
   /// Tracker.stops_at_the_workspace_boundary_and_returns has |z| from 1 to 8.
   static constexpr auto kUsual = Scalar(1);
 
-  Matrix<M, M, Scalar> delta_;     ///< Δ. Set only if the rows are nearly singular.
-  Scalar threshold_{0};            ///< ε². Set only if the rows are nearly singular.
-  Scalar lost_{0};                 ///< tr Δ/ε², about the number of lost directions.
-  Scalar fade_{1};                 ///< LostDirections::fade, or 0 if the null space of JC is not known.
+  Matrix<M, M, Scalar> delta_;  ///< Δ. Set only if the rows are nearly singular.
+  Scalar threshold_{0};         ///< ε². Set only if the rows are nearly singular.
+  Scalar lost_{0};              ///< tr Δ/ε², about the number of lost directions.
+  Scalar fade_{1};              ///< LostDirections::fade, or 0 if the null space of JC is not known.
 };
 
 }  // namespace fpbm
