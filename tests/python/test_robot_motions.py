@@ -295,7 +295,8 @@ def test_a_job_of_a_robot(urdf: Path) -> None:
 
     Path("job.toml").write_text(JOB)
     motion = prepare(read_job("job.toml"))
-    assert motion.arm == fp.Robot.from_urdf(urdf, base="planar", locked={"neck": 0.2})
+    limits = fp.JointLimits(acceleration=10)
+    assert motion.arm == fp.Robot.from_urdf(urdf, base="planar", locked={"neck": 0.2}, limits=limits)
     back = fp.Line([0.05, 0, 0], 2).then(fp.Line([-0.05, 0, 0], 2))
     assert motion.path == {"left": fp.Circle(0.05, 4).in_plane("yz"), "right": back}
     assert motion.label.endswith("robot.urdf, circle and line then line")
@@ -342,7 +343,8 @@ def test_frames_on_the_command_line(urdf: Path, count: int) -> None:
     for words in ("final error of left_tool", "least scale of posture", "status"):
         assert words in result.stdout
     motion = prepare(read_job("job.toml"))
-    assert motion.arm == fp.Robot.from_urdf(urdf, base="planar", locked={"neck": 0.2})
+    limits = fp.JointLimits(acceleration=10)
+    assert motion.arm == fp.Robot.from_urdf(urdf, base="planar", locked={"neck": 0.2}, limits=limits)
     assert motion.stack == fp.Stack([fp.PoseTask(tool, name=tool) for tool in tools], fp.PostureTask(k1=4, k2=4))
     circle = fp.Circle(0.05, 0.5).in_plane("yz")
     assert motion.path == (circle if count == 1 else dict.fromkeys(tools, circle))

@@ -64,6 +64,7 @@ class Correction {
     far_ = far_ || first;
   }
 
+  [[nodiscard]] Scalar error_bound() const noexcept { return error_bound_; }
   /// Whether the feedback uses only a part of an error of the first level.
   [[nodiscard]] bool far() const noexcept { return far_; }
   /// Whether the correction changes a reference.

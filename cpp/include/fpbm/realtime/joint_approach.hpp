@@ -82,7 +82,9 @@ template <Level kLevel, int N, typename Scalar>
 }
 
 /// Reduces the errors of the posture tasks of a stack by the smallest fraction of all joints (JointApproach), so that
-/// the joints move along a straight line and arrive together. correction: after begin().
+/// the joints move along a straight line and arrive together. At velocity level, limits slow all levels together
+/// (followable_fraction()). Therefore the error of a lower level is within the error bound instead, so that the motion to
+/// a far posture does not slow the first level. correction: after begin().
 /// displacement(joint): of a joint since begin() [rad] or [m].
 template <Level kLevel, typename Space, typename Arm, typename Limits, typename Correction, typename Displacement>
 void approach_postures([[maybe_unused]] const Arm& arm, [[maybe_unused]] const Limits& limits,
@@ -95,11 +97,17 @@ void approach_postures([[maybe_unused]] const Arm& arm, [[maybe_unused]] const L
       if constexpr (kIsJointSpace<decltype(space)>) {
         constexpr std::size_t kIndex = decltype(i)::value;
         const auto& task = std::get<kIndex>(arm.stack().tasks());
+        constexpr bool kBounded = kLevel == Level::kVelocity && kIndex >= static_cast<std::size_t>(Space::kFirst);
         const auto error = [&](int r) noexcept {
-          return correction.error().coeff(row + r) - displacement(task.joint(r));
+          return correction.error().coeff(row + r) - (kBounded ? Scalar(0) : displacement(task.joint(r)));
         };
         Scalar fraction(1);
-        for (int r = 0; r < rows_of(task); ++r) {
+        if constexpr (kBounded) {
+          Scalar square(0);
+          for (int r = 0; r < rows_of(task); ++r) square += error(r) * error(r);
+          fraction = std::min(fraction, correction.error_bound() / std::sqrt(square));
+        }
+        for (int r = 0; r < rows_of(task) && !kBounded; ++r) {
           const int joint = task.joint(r);
           const JointApproach<kLevel, Scalar> approach{task.gains, bounds.velocity.coeff(joint),
                                                        approach_deceleration(limits, joint), bounds.jerk.coeff(joint)};

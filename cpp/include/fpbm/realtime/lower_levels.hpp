@@ -25,7 +25,7 @@ namespace fpbm {
 /// if it makes no progress, its error exceeds 0.0001, no target has moved by 0.002 (TaskDistance), and no task makes
 /// progress of more than 0.002. A stopped task brakes: its reference is its current point at zero velocity, until the
 /// task and the joints are at rest or the next window ends. Then the task holds this point. If the task leaves this
-/// point by more than 0.000025 while the first level is at its target, all joints brake.
+/// point by more than 0.000025 while all other tasks are at their targets, all joints brake.
 ///
 /// All tasks follow their references again if a target of any level or a shape near the arm moves, and after a tick
 /// that does not follow the references.
@@ -131,8 +131,9 @@ class LowerLevels {
   void end_window() noexcept {
     bool progress = false;
     bool settled = any_stopped_;
-    reached_ = std::all_of(peak_.begin(), peak_.begin() + Space::kFirst, [](Scalar peak) { return peak == Scalar(0); });
+    reached_ = true;
     for (std::size_t i = 0; i < kTasks; ++i) {
+      reached_ = reached_ && (stopped_[i] || peak_[i] == Scalar(0));
       const bool approaches = peak_[i] < (Scalar(1) - kApproach) * least_[i];
       progress = progress || (approaches && peak_[i] < least_[i] - kMoved);
       settled = settled && !(counts_[i] && approaches);
@@ -186,8 +187,8 @@ class LowerLevels {
   Scalar time_;  ///< Since the start of the window [s].
   bool any_stopped_;
   bool at_rest_;    ///< Whether the joints were at rest in the last tick with a stopped task.
-  bool reached_;    ///< Whether the tasks of the first level were at their targets in the last window.
-  bool displaced_;  ///< Whether a stopped task has left its point while the first level was at its target.
+  bool reached_;    ///< Whether all tasks that have not stopped were at their targets in the last window.
+  bool displaced_;  ///< Whether a stopped task has left its point while the other tasks were at their targets.
   int quiet_;       ///< Windows since the last stop or approach of a task.
   Scalar displacements_ = Scalar(0);  ///< Sum of the displacements of the targets from target_.
   std::array<bool, kTasks> stopped_;
