@@ -13,7 +13,8 @@ from pathlib import Path
 NUMBER = re.compile(r"(?<![\w.])[-−]?\d+(?:\.\d+)?(?:e[+-]?\d+)?(?![\w.]*\d)")
 CODE = re.compile(r"`([^`]+)`")
 SETTING = re.compile(r"\b(FPBM_\w+)=(\S+)")
-ROUND_OFF = 2.0  # Factor between two numbers in exponent notation, which are round-off or convergence errors.
+FACTOR = 2.0  # Between two numbers in exponent notation, which are errors of convergence.
+ROUND_OFF = 1e-9  # All numbers in exponent notation up to this size are round-off errors, which depend on the machine.
 
 
 @dataclass(frozen=True)
@@ -88,6 +89,8 @@ def same(expected: str, printed: str) -> bool:
     """Whether a printed number is the expected number, rounded to the expected digits."""
     one, other = float(expected), float(printed)
     if "e" in expected:
-        return other == one or (one * other > 0 and 1 / ROUND_OFF <= other / one <= ROUND_OFF)
+        if max(abs(one), abs(other)) <= ROUND_OFF:
+            return True
+        return one * other > 0 and 1 / FACTOR <= other / one <= FACTOR
     digits = len(expected.partition(".")[2])
     return abs(other - one) <= 0.5001 * 10.0**-digits
