@@ -483,6 +483,7 @@ class TargetFilter:
         timeout: typing.SupportsFloat | typing.SupportsIndex = 0.2,
         start: typing.SupportsFloat | typing.SupportsIndex | None = None,
     ) -> None: ...
+    def __repr__(self) -> str: ...
     def advance(self) -> None:
         """
         Advances by one tick; Tracker.tick calls advance.
@@ -533,6 +534,7 @@ class Tick:
     """
     Result of one tick of a control loop.
     """
+    def __repr__(self) -> str: ...
     @property
     def error(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -593,6 +595,7 @@ class PathFollower:
     """
     A path from the tip, with a clock that can pause and resume; the result of Tracker.follow.
     """
+    def __repr__(self) -> str: ...
     def pause(self) -> None:
         """
         Stops on the path within the ramp time.
@@ -705,6 +708,7 @@ class Tracker:
         bounds: typing.Any = (),
         recover_start: bool = False,
     ) -> None: ...
+    def __repr__(self) -> str: ...
     def enable(self, level: typing.SupportsInt | typing.SupportsIndex, on: bool) -> None:
         """
         Enables or disables a level of a stack below the first; levels are counted from 0.
