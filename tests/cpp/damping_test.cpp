@@ -467,7 +467,8 @@ void add_errors(FreeErrors& errors, const Scheme& scheme, const Matrix<M, N, Sca
   Vector<N, Scalar> u = Vector<N, Scalar>::Zero();
   const Vector<M, Scalar> nothing = Vector<M, Scalar>::Zero();
   const State<N, Scalar> at_rest{q, Vector<N, Scalar>::Zero()};
-  const Status status = scheme.resolve_rows(nothing, nothing, J, Matrix<M, N, Scalar>::Zero().eval(), at_rest, u);
+  const Matrix<M, N, Scalar> Jd = Matrix<M, N, Scalar>::Zero();
+  const Status status = scheme.resolve_rows(nothing, nothing, J, Jd, at_rest, u);
   EXPECT_FALSE(failed(status)) << message(status);
   const RealVector z = real(scheme.null_space.position_part(at_rest));
   const auto radius = static_cast<double>(scheme.singular.radius());

@@ -334,8 +334,8 @@ Vector<kOpen> open_posture(const AnyArm<Position<3>>& arm) {
     const Vector<kOpen> q = lower + share.cwiseProduct(upper - lower);
     Kinematics<Pose, kOpen> kinematics;
     arm.kinematics(q, kinematics);
-    const double open =
-        arm.dof() < Pose::kRows ? manipulability(kinematics.J.topRows<3>().eval()) : manipulability(kinematics.J);
+    const Matrix<3, kOpen> position = kinematics.J.topRows<3>();
+    const double open = arm.dof() < Pose::kRows ? manipulability(position) : manipulability(kinematics.J);
     if (open > most) best = q;
     most = std::max(most, open);
   }

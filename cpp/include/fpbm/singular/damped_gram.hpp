@@ -194,7 +194,7 @@ class DampedGram {
       command += lost * lost;
     }
     const Scalar size =
-        std::sqrt(first(entrywise(a, [&](Eigen::Index i) { return a.coeff(i) * a.coeff(i); }).sum())) + kUsual;
+        std::sqrt(first(entrywise(a, [&](Eigen::Index i) { return a.coeff(i) * a.coeff(i); }).sum())) + Scalar(kUsual);
     const Scalar most = threshold_ * threshold_ * threshold_ * size * size;
     return command > most ? std::min((command - most) / (Scalar(3) * most), Scalar(1)) : Scalar(0);
   }
@@ -241,7 +241,7 @@ class DampedGram {
   Cholesky<M, Value> damped_;      ///< Factorisation of D(JW⁻¹Jᵀ)D + Δ, if Δ ≠ 0.
   /// Usual size of a secondary motion [rad/s] or [rad/s²], with which a command is compared if z is small. Not tuned:
   /// Tracker.stops_at_the_workspace_boundary_and_returns has |z| from 1 to 8.
-  static constexpr auto kUsual = Scalar(1);
+  static constexpr Number<Scalar> kUsual = 1;
 
   Matrix<M, M, Scalar> delta_;  ///< Δ. Set only if the rows are nearly singular.
   Scalar threshold_{0};         ///< ε². Set only if the rows are nearly singular.
