@@ -193,8 +193,10 @@ struct AccelerationScheme {
           solutions.motion(solutions.coefficients(side_by_side<M, 1, Scalar>(even, weighted)));
       y = second<N, 1, Scalar>(solutions.project(side_by_side<N, 1, Scalar>(y, y)));
       if constexpr (kDamped) {
-        const Vector<N, Scalar> z = weights.inverse_root(null_space.position_part(state));
-        y = sum_of(y, second<N, 1, Scalar>(solutions.secondary(side_by_side<N, 1, Scalar>(z, z), b)));
+        if (null_space.template active<Level::kVelocity>()) {
+          const Vector<N, Scalar> z = weights.inverse_root(null_space.position_part(state));
+          y = sum_of(y, second<N, 1, Scalar>(solutions.secondary(side_by_side<N, 1, Scalar>(z, z), b)));
+        }
       }
       y = entrywise(y, [&](Eigen::Index i) { return y.coeff(i) + parts.coeff(i).second(); });
       return plus_first<N, Scalar>(weights.root(y), parts);

@@ -54,7 +54,9 @@ template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weig
     if constexpr (kForced) y0 = sum_of(y0, weights.root_transpose(force(solutions)));
     Vector<N, Scalar> free = solutions.project(y0);
     if constexpr (kDamped) {
-      free = sum_of(free, solutions.secondary(weights.inverse_root(null_space.position_part(state)), v));
+      if (null_space.template active<Level::kVelocity>()) {
+        free = sum_of(free, solutions.secondary(weights.inverse_root(null_space.position_part(state)), v));
+      }
     }
     const Vector<N, Scalar> done = solutions.motion(solutions.coefficients(v));
     return sum_of(free, done);
