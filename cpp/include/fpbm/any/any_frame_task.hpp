@@ -76,7 +76,7 @@ struct FrameSpace {
   /// error discontinuous. If all three rotations are rows, the error decreases and |r| does not stay at π.
   template <typename Scalar>
   [[nodiscard]] static Scalar turn_fraction(const Vector<6, Scalar>& difference) noexcept {
-    constexpr Scalar kPi = static_cast<Scalar>(kTwoPi / 2.0);
+    constexpr auto kPi = static_cast<Scalar>(kTwoPi / 2.0);
     const Scalar angle = norm(Vector<3, Scalar>(difference(3), difference(4), difference(5)));
     return angle > kPi - kTurnBand<Scalar> ? (kPi - std::min(angle, kPi)) / kTurnBand<Scalar> : Scalar(1);
   }
