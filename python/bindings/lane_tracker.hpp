@@ -19,8 +19,13 @@ class LaneTracker {
     Status status;
   };
 
+  /// continuous: bits of the continuous joints.
   template <typename Tracker>
-  explicit LaneTracker(std::unique_ptr<Tracker> tracker) : held_(std::make_unique<Held<Tracker>>(std::move(tracker))) {}
+  LaneTracker(std::unique_ptr<Tracker> tracker, JointBits continuous)
+      : continuous_(continuous), held_(std::make_unique<Held<Tracker>>(std::move(tracker))) {}
+
+  /// Bits of the continuous joints.
+  [[nodiscard]] JointBits continuous() const noexcept { return continuous_; }
 
   [[nodiscard]] Point tip() const noexcept { return held_->tip(); }
   [[nodiscard]] State<N> state() const noexcept { return held_->state(); }
@@ -74,6 +79,7 @@ class LaneTracker {
     std::unique_ptr<Tracker> tracker_;
   };
 
+  JointBits continuous_;
   std::unique_ptr<Holder> held_;
 };
 

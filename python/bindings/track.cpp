@@ -166,7 +166,7 @@ RolloutResult<kDynamic> Motion<Space>::track(const LimitOptions& limit_options, 
 template <typename Space>
 template <int N>
 LaneTracker<Space, N> Motion<Space>::tracker(const LimitOptions& limit_options) const {
-  return LaneTracker<Space, N>(tracker_of(*this, limit_options));
+  return {tracker_of(*this, limit_options), continuous_joints(*arm, limit_options.limits)};
 }
 
 template <typename Space>
