@@ -9,10 +9,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 import fpbm_cpp as fp
 from fpbm_cpp import JointLimits  # The repr of limits.
+
+pytest.importorskip("click")
+
+from click.testing import CliRunner
+
 from fpbm_cpp.cli import command
 
 PANDA = fp.SerialArm.preset("panda")

@@ -15,9 +15,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 import fpbm_cpp as fp
+
+pytest.importorskip("click")
+
+from click.testing import CliRunner
+
 from fpbm_cpp.cli import command
 
 LIMIT = 'lower="-1" upper="2" velocity="3" effort="4"'
