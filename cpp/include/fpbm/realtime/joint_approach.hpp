@@ -83,9 +83,9 @@ template <Level kLevel, int N, typename Scalar>
 
 /// Reduces the errors of the posture tasks of a stack by the smallest fraction of all joints (JointApproach), so that
 /// the joints move along a straight line and arrive together. At velocity level, limits slow all levels together
-/// (followable_fraction()). Therefore the error of a lower level is within the error bound instead, so that the motion to
-/// a far posture does not slow the first level. correction: after begin().
-/// displacement(joint): of a joint since begin() [rad] or [m].
+/// (followable_fraction()). Therefore the error of a lower level is within the error bound instead, so that the motion
+/// to a far posture does not slow the first level. correction: after begin(). displacement(joint): of a joint since
+/// begin() [rad] or [m].
 template <Level kLevel, typename Space, typename Arm, typename Limits, typename Correction, typename Displacement>
 void approach_postures([[maybe_unused]] const Arm& arm, [[maybe_unused]] const Limits& limits,
                        [[maybe_unused]] Correction& correction,
