@@ -842,8 +842,8 @@ def test_servo_reports_invalid_options() -> None:
     assert error_of("servo", "--job", "job.toml") == "servo starts at rest: remove qd0, or use track"
     pytest.importorskip("viser")
     assert error_of("servo", "panda", "--q0", "9,0,0,-2,0,2,0") == (
-        "--q0[0] = 9: must be within the joint's range, from -2.8973 to 2.8973: positions are in radians, and the value "
-        "looks like degrees; multiply it by pi/180, or give recover_start = true, with which the joint returns"
+        "--q0[0] = 9: must be within the joint's range, from -2.8973 to 2.8973: positions are in radians, and the "
+        "value looks like degrees; multiply it by pi/180, or give recover_start = true, with which the joint returns"
     )
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
