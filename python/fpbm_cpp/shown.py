@@ -68,4 +68,4 @@ def _follower(self: PathFollower) -> str:
 
 
 for _kind, _text in ((Tracker, _tracker), (Tick, _tick), (TargetFilter, _filter), (PathFollower, _follower)):
-    _kind.__repr__ = _text  # type: ignore[assignment, method-assign]
+    _kind.__repr__ = _text  # type: ignore[method-assign]
