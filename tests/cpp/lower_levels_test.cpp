@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -96,7 +97,7 @@ template <typename Kind>
 [[nodiscard]] auto scheme_of(Acceleration, const Vector<N>& q, double stiffness) {
   auto null_space = NullSpace<N>().with_damping(4.0);
   if (stiffness > 0.0) null_space = null_space.with_rest_posture(q, stiffness);
-  return Balanced<N>(0.0, Vector<N>(Vector<N>::Ones(q.size())), null_space);
+  return Balanced<N>(0.0, UnitWeights{}, null_space);
 }
 [[nodiscard]] auto scheme_of(Velocity, const Vector<N>& q, double stiffness) {
   NullSpace<N> null_space;
@@ -204,6 +205,46 @@ TEST(LowerLevels, stay_where_they_stopped_at_acceleration_level) {
 }
 TEST(LowerLevels, stay_where_they_stopped_at_velocity_level) {
   expect_stops(Velocity{});
+}
+
+/// A position below the axis of the tip of a Panda jumps or moves out of the workspace, and returns.
+TEST(LowerLevels, reach_their_targets_again) {
+  const Robot<N> robot(panda());
+  const auto tip = frame_of(panda(), "arm_tip");
+  const TaskGains<> gains(10.0, 25.0);
+  const auto level = [](const AnyFrameTask& task) { return AnyLevel(task, {}, {}); };
+  const AnyStack stack(level({FrameCoordinates::kAxis, tip, gains, kAll, false}),
+                       level({FrameCoordinates::kPosition, tip, gains, kAll, false}),
+                       level({FrameCoordinates::kPosition, LinkFrame<>(4), gains, kHeight, false}),
+                       AnyLevel({}, {}, AnyPostureTask({0, 1, 2, 3, 4, 5, 6}, TaskGains<>(4.0, 4.0))));
+  const auto scheme = Balanced<N>(0.6, UnitWeights{}, NullSpace<N>().with_damping(2.0));
+  const int count = trials(120, 12);
+  int reached = 0;
+  for (int seed = 0; seed < count; ++seed) {
+    Random random(static_cast<std::uint32_t>(seed));
+    Vector<N> q0 = Vector<7>{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785};
+    for (Eigen::Index i = 0; i < 7; ++i) q0(i) += random.uniform(-0.3, 0.3);
+    auto tracker = stack_tracker(robot, stack, scheme, State<N>{q0, Vector<N>::Zero(7)}, TrackerOptions<>{},
+                                 Limits<Level::kAcceleration, N>(robot.limits(), TrackerOptions<>{}.dt));
+    auto target = decltype(tracker)::Target::hold(tracker.tip());
+    Vector<3>& place = std::get<kTask<1>>(target.x).at.p;
+    const Vector<3> home = place;
+    Vector<3> out = random.uniform(3, -1.0, 1.0);
+    out *= random.uniform(0.6, 1.2) / out.norm();
+    const int ramp = random.uniform(0.0, 1.0) < 0.5 ? 1 : 3000;
+    const auto go = [&](const Vector<3>& to, int ticks) {
+      const Vector<3> from = place;
+      for (int k = 1; k <= ticks; ++k) {
+        place = from + (to - from) * std::min(1.0, static_cast<double>(k) / ramp);
+        (void)tracker.tick(target);
+      }
+    };
+    go(home + out, 8000);
+    go(home, 10000);
+    reached += (std::get<kTask<1>>(tracker.tip()).at.p - home).norm() < 1e-3 ? 1 : 0;
+  }
+  std::printf("%d of %d positions are reached again\n", reached, count);
+  EXPECT_GE(reached, count - std::max(count / 12, 2));
 }
 
 }  // namespace

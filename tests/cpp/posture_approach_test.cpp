@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "fpbm/any/any_posture_task.hpp"
+#include "fpbm/any/any_stack.hpp"
 #include "fpbm/model/presets.hpp"
 #include "fpbm/model/robot_presets.hpp"
 #include "fpbm/realtime/stack_tracker.hpp"
@@ -66,6 +66,8 @@ constexpr int N = Eigen::Dynamic;
   return q;
 }
 
+constexpr std::size_t kPosture = 2;  ///< Index of the first posture task of an AnyStack.
+
 struct Approach {
   double ratio = 0.0;      ///< Time until the error is below 1 % of the distance, divided by the least time.
   double overshoot = 0.0;  ///< Largest displacement of a joint beyond its target, divided by the distance.
@@ -87,8 +89,9 @@ template <typename Scheme>
   // A posture of all joints on the first level.
   std::vector<int> joints(static_cast<std::size_t>(robot.dof()));
   for (std::size_t i = 0; i < joints.size(); ++i) joints[i] = static_cast<int>(i);
-  auto tracker = stack_tracker(robot, Stack(AnyPostureTask(joints, gains)), scheme,
-                               State<N>{q0, Vector<N>::Zero(q0.size())}, options, limits);
+  const AnyLevel none({}, {}, {});
+  const AnyStack stack(AnyLevel({}, {}, AnyPostureTask(joints, gains)), none, none, none);
+  auto tracker = stack_tracker(robot, stack, scheme, State<N>{q0, Vector<N>::Zero(q0.size())}, options, limits);
   auto reference = decltype(tracker)::Target::hold(tracker.tip());
   // A continuous joint moves by at most half a turn.
   for (Eigen::Index i = 0; i < q0.size(); ++i) {
@@ -97,7 +100,7 @@ template <typename Scheme>
   double least = 0.0;
   double distance = 0.0;
   for (Eigen::Index i = 0; i < q0.size(); ++i) {
-    std::get<0>(reference.x)(i) = target(i);
+    std::get<kPosture>(reference.x)(i) = target(i);
     distance = std::max(distance, std::abs(target(i) - q0(i)));
     least = std::max(least, least_time(std::abs(target(i) - q0(i)), bounds.velocity(i), bounds.acceleration(i),
                                        std::min(bounds.jerk(i), 1e9)));
