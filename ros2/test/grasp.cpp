@@ -46,14 +46,21 @@ double largest_error(TwoArms& robot, int jumps, unsigned int seed) {
       fastest = std::max(fastest, robot.speed());
     }
   };
-  for (int k = 0; k < jumps; ++k) {
+  const auto jump = [&] {
     Transform<> tray = start;
     tray.p += three(0.3);
     tray.R = fpbm::rotation(three(0.5)) * tray.R;
     robot.hear("~/tray/target_pose", message_in("table", tray));
-    if (k + 1 < jumps) tick(1500);
+  };
+  for (int k = 1; k < jumps; ++k) {
+    jump();
+    tick(1500);
   }
-  for (int i = 0; i < 1500 && robot.speed() <= 0.2; ++i) tick(1);  // Toward the last target.
+  // Toward the last target. If a joint on its bound admits no motion toward this target, toward other targets.
+  for (int k = 0; k < 10 && robot.speed() <= 0.2; ++k) {
+    jump();
+    for (int i = 0; i < 500 && robot.speed() <= 0.2; ++i) tick(1);
+  }
   const double before = robot.speed();
   robot.q[9] = std::numeric_limits<double>::quiet_NaN();
   tick(1500);
