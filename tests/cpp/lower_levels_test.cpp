@@ -109,6 +109,9 @@ template <typename Kind>
 template <std::size_t kLevel>
 inline constexpr std::size_t kTask = 3 * kLevel;
 
+/// Time at rest after which a motion ends [s]: longer than the 20 s after which all joints brake.
+constexpr double kStill = 30.0;
+
 struct Motion {
   double speed = 0.0;            ///< Largest joint velocity after 80 s [rad/s].
   std::array<double, 2> away{};  ///< Distance of each lower level from the point where it stopped.
@@ -147,6 +150,7 @@ template <typename Kind>
   Kinematics<Space, N> kinematics;
   Motion found;
   std::array<bool, 2> stopped{};
+  int still = 0;
   const auto ticks = static_cast<int>(std::lround(82.0 / h));
   for (int i = 0; i < ticks; ++i) {
     tasks.points(tracker.state().q, kinematics);
@@ -157,14 +161,18 @@ template <typename Kind>
     seen.scales.fill(1.0);
     watch.report(seen);
     watch.end_tick(!failed(tick.status), tick.qd, 0.0, kinematics.length);
-    if (i * h >= 80.0) found.speed = std::max(found.speed, tick.qd.cwiseAbs().maxCoeff());
-    if (i + 1 < ticks) continue;
+    const double speed = tick.qd.cwiseAbs().maxCoeff();
+    still = speed < 1e-9 ? still + 1 : 0;
+    const bool ends = i + 1 == ticks || still * h > kStill;
+    if (ends || i * h >= 80.0) found.speed = std::max(found.speed, speed);
+    if (!ends) continue;
     const auto held = task_error(kinematics, references.stages[0].x);
     for (std::size_t j = 0; j < 2; ++j) {
       stopped[j] = seen.scales[1 + j] == 0.0;
       const auto row = static_cast<Eigen::Index>((1 + j) * (12 + kMaxDof));
       found.away[j] = stopped[j] ? held.segment(row, 6).norm() : 0.0;
     }
+    break;
   }
   if (std::getenv("FPBM_PRINT") != nullptr) {
     std::printf("%s %d: rest %d jerk %d far %d keep %d: speed %.1e away %.1e %.1e stopped %d %d\n",
