@@ -226,7 +226,7 @@ TEST(LowerLevels, reach_their_targets_again) {
                        level({FrameCoordinates::kPosition, LinkFrame<>(4), gains, kHeight, false}),
                        AnyLevel({}, {}, AnyPostureTask({0, 1, 2, 3, 4, 5, 6}, TaskGains<>(4.0, 4.0))));
   const auto scheme = Balanced<N>(0.6, UnitWeights{}, NullSpace<N>().with_damping(2.0));
-  const int count = trials(120, 12);
+  const int count = trials(120, trials(12));
   int reached = 0;
   for (int seed = 0; seed < count; ++seed) {
     Random random(static_cast<std::uint32_t>(seed));
