@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "fpbm/any/any_stack.hpp"
+#include "fpbm/model/presets.hpp"
 #include "fpbm/realtime/stack_tracker.hpp"
 #include "support/random.hpp"
 
