@@ -56,9 +56,9 @@ struct ScaledLevel {
  private:
   /// ρ. With the radius 0.1 of lower levels (kLevelRadius), a direction is lost at σ = 0.03 ‖J‖_F because of the
   /// posture. Source of the value: 120 trials in which the target of a position task of a Panda, one level below an
-  /// axis task, leaves the workspace and returns. The tip reaches 112 of the 120 targets again; 98 with ρ = 0.1, 107
-  /// with 0.2, 113 with 0.6, 110 with 1. `FPBM_ALL_TRIALS=1 fpbm_tests --gtest_filter=LowerLevels.reach*` prints
-  /// the number of targets. Without scaled rows and with the radius 0.1 ‖J‖_F, the tip reaches 111 targets again.
+  /// axis task, leaves the workspace and returns. The tip reaches 115 of the 120 targets again; 108 with ρ = 0.1, 111
+  /// with 0.2, 115 with 0.6, 110 with 1. `FPBM_ALL_TRIALS=1 fpbm_tests --gtest_filter=LowerLevels.reach*` prints the
+  /// number of targets.
   static constexpr Scalar kPosture = Scalar(0.3);
 };
 
