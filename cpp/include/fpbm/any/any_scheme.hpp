@@ -38,6 +38,9 @@ class AnyScheme {
     return held_->resolve(kinematics, reference, state, u);
   }
 
+  /// Feedback gains at acceleration level, or zero.
+  [[nodiscard]] TaskGains<> gains() const noexcept { return held_->gains(); }
+
   friend void set_damping(AnyScheme& scheme, const DefaultDamping<>& damping) {
     scheme.held_ = scheme.held_->with(damping);
   }
@@ -53,6 +56,7 @@ class AnyScheme {
     virtual ~Holder() = default;
     virtual void require_dof(Eigen::Index dof) const = 0;
     [[nodiscard]] virtual std::shared_ptr<const Holder> with(const DefaultDamping<>& damping) const = 0;
+    [[nodiscard]] virtual TaskGains<> gains() const noexcept = 0;
     virtual void require_stable_in(const TickOfGains<>& tick) const = 0;
     [[nodiscard]] virtual Status resolve(const Kinematics<Space, kDof>& kinematics, const Reference<Space>& reference,
                                          const State<kDof>& state, Vector<kDof>& u) const noexcept = 0;
@@ -69,6 +73,8 @@ class AnyScheme {
       give_damping(changed, damping);
       return std::make_shared<const Held>(changed);
     }
+
+    [[nodiscard]] TaskGains<> gains() const noexcept override { return gains_of<double>(scheme); }
 
     void require_stable_in(const TickOfGains<>& tick) const override { require_stable(scheme, tick); }
 

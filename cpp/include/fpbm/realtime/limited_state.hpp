@@ -23,7 +23,7 @@ namespace fpbm {
 ///
 /// If an RK4 step keeps every bound, the tick is this step. Otherwise the mean motion of the step is limited (Limiter).
 /// If only the position at the end of the step violates a bound, the tick has the mean acceleration of the step
-/// throughout. has_one_acceleration() and evaluate_middle_if_limited() define the ticks without an RK4 step.
+/// throughout. 
 template <Level kLevel, typename Space, int N, typename Scalar, typename Guard_>
 class LimitedState {
  public:
@@ -89,38 +89,33 @@ class LimitedState {
            is_finite(entrywise(state.qd, [&](Eigen::Index i) { return state.qd.coeff(i) * rate; }));
   }
 
-  /// Whether a tick has one acceleration (docs/equations.md, A tick with one acceleration): a tick of several tasks at
-  /// acceleration level. An RK4 step would contain motions of lower levels that the limits do not admit, and that
-  /// disturb the higher levels by J̇q̇ in the mean motion of the step. An RK4 step also resolves the tasks four times.
-  template <typename Arm>
-  [[nodiscard]] static bool has_one_acceleration(const Arm& arm) noexcept {
-    return kSecondOrder && has_several_tasks(arm);
-  }
-
   /// Rows of the guard at the start of the tick.
   [[nodiscard]] auto rows() noexcept { return guard_.rows(limits(), tick_.joints); }
 
-  /// Whether, at the start of a tick, damping is active, the guard adds motion away from shapes, or the limits or the
-  /// rows do not admit the acceleration. If the result is true, the tick has one acceleration, which is evaluated in
-  /// the middle of the tick, and no RK4 step (docs/limits.md, Bounds on jerk). The function sets `next` to the state
-  /// after the tick, and leaves the kinematics of the middle in `loop`. Therefore the longest ticks resolve the task
-  /// twice instead of four times. reference: in the middle of the tick. at_start: joint accelerations at the start
-  /// [rad/s²]. At velocity level, only motion away from shapes counts, and the tick has one velocity.
-  template <typename Loop, typename Target, typename Rows>
-  [[nodiscard]] bool evaluate_middle_if_limited(Loop& loop, const Target& reference, const Rows& rows,
-                                                JointVector at_start, JointState& next, Result& result) const noexcept {
-    if constexpr (!kSecondOrder && !kGuarded) return false;
-    if (failed(result.status)) return false;
-    bool evaluates = false;
-    if constexpr (kGuarded) evaluates = guard_.moves_away();
-    if constexpr (kSecondOrder) {
-      evaluates =
-          evaluates || result.status == Status::kDamped || !(rows.admit(at_start) && admits(tick_.after(at_start)));
+  /// Whether the limits, the rows and the guard admit a tick to the state `next`.
+  template <typename Rows>
+  [[nodiscard]] bool is_free(const Rows& rows, const JointState& next) const noexcept {
+    if constexpr (kGuarded) {
+      if (guard_.moves_away()) return false;
     }
-    if (!evaluates) return false;
-    result.status = worse(result.status, tick_.evaluate_middle(loop, reference, at_start));
-    next = tick_.after(at_start);
-    return true;
+    return !stopping_ && rows.admit(tick_.motion_to(next)) && admits(next);
+  }
+
+  /// At velocity level, if the guard adds motion away from shapes, the tick has one velocity, which is evaluated in the
+  /// middle of the tick, and no RK4 step. The function then returns true, sets `next` to the state after the tick, and
+  /// leaves the kinematics of the middle in `loop`. reference: in the middle of the tick. field: joint velocities at
+  /// the start [rad/s].
+  template <typename Loop, typename Target>
+  [[nodiscard]] bool evaluate_middle_of_guarded([[maybe_unused]] Loop& loop, [[maybe_unused]] const Target& reference,
+                                                [[maybe_unused]] JointVector field, [[maybe_unused]] JointState& next,
+                                                [[maybe_unused]] Result& result) const noexcept {
+    if constexpr (kGuarded) {
+      if (failed(result.status) || !guard_.moves_away()) return false;
+      result.status = worse(result.status, tick_.evaluate_middle(loop, reference, field));
+      next = tick_.after(field);
+      return true;
+    }
+    return false;
   }
 
   /// Ends a tick: limits the desired motion, and updates the state, the result, and the detection of a stall. If the
@@ -128,12 +123,12 @@ class LimitedState {
   ///
   /// next: state to which the desired motion leads. At velocity level, only next.q is read. field: velocities of the
   /// scheme at the start of the tick [rad/s], read at velocity level only. now: reference at the start, not corrected.
-  /// rows: bounds on the motion from the guard. one_acceleration: whether `loop` has the kinematics in the middle of
-  /// the tick. Otherwise, the kinematics are evaluated if the motion must be limited. result: has the status of the
+  /// rows: bounds on the motion from the guard. has_middle: whether `loop` has the kinematics in the middle of the
+  /// tick. Otherwise, the kinematics are evaluated if the motion must be limited. result: has the status of the
   /// desired motion, and the error with which the correction began.
   template <typename Loop, typename Target, typename Rows>
   void finish_tick(Loop& loop, const Target& now, Rows rows, JointState next, const JointVector& field,
-                   bool one_acceleration, Result& result) noexcept {
+                   bool has_middle, Result& result) noexcept {
     const bool damped = result.status == Status::kDamped;
     if constexpr (kGuarded) {
       progress_.watch_shapes(tick_.joints.qd.isZero(Scalar(0)), guard_.near_distance_sum(), correction_.length());
@@ -152,7 +147,7 @@ class LimitedState {
     if (recovering) {
       next = recovery_tick(rows, result);
     } else if (stopping_ || result.status >= Status::kStalled || !rows.admit(tick_.motion_to(next)) || !admits(next)) {
-      next = limited_tick(loop, now, rows, next, field, one_acceleration, result);
+      next = limited_tick(loop, now, rows, next, field, has_middle, result);
     }
     if constexpr (kGuarded) keep_clear(next, result);
     result.q = next.q;
@@ -169,18 +164,9 @@ class LimitedState {
   /// with 0.4, one with 0.6, and none with 0.7.
   static constexpr Scalar kReserve = Scalar(0.7);
 
-  /// Replaces the end of an RK4 step by the end of a tick whose positions also keep the bounds. Acceleration level:
-  /// with bounds on jerk or a clearance, or if differences of positions would violate bounds, the tick has the mean
-  /// acceleration of the step (docs/limits.md, Bounds on jerk). Velocity level: the tick has the mean velocity of the
-  /// step.
+  /// Velocity level: the tick has the mean velocity of the RK4 step.
   void make_admissible(JointState& next) const noexcept {
-    if constexpr (kSecondOrder) {
-      if (!guard_.empty() || limits().bounds_jerk() || !limits().admits_differences(tick_.joints, next)) {
-        next.q = tick_.motion.moved(tick_.joints, tick_.acceleration_to(next));
-      }
-    } else {
-      next.qd = tick_.motion.rate(tick_.joints.q, next.q);
-    }
+    if constexpr (!kSecondOrder) next.qd = tick_.motion.rate(tick_.joints.q, next.q);
   }
 
   /// State after a tick of a recovery.
@@ -196,7 +182,7 @@ class LimitedState {
   /// arguments are as in finish_tick().
   template <typename Loop, typename Target, typename Rows>
   [[nodiscard]] JointState limited_tick(Loop& loop, const Target& now, const Rows& rows, const JointState& next,
-                                        const JointVector& field, bool one_acceleration,
+                                        const JointVector& field, bool has_middle,
                                         Result& result) const noexcept {
     JointVector desired = tick_.motion_to(next);
     Scalar fraction(1);  // Fraction of the velocities of the scheme.
@@ -217,7 +203,7 @@ class LimitedState {
     }
     const bool several = has_lower_levels(loop.kinematics);
     const bool evaluates =
-        !kSecondOrder && !failed(result.status) && (several || one_acceleration || is_nearly_at_rest(result));
+        !kSecondOrder && !failed(result.status) && (several || has_middle || is_nearly_at_rest(result));
     if constexpr (!kSecondOrder) {
       if (evaluates) {
         result.status = worse(result.status, tick_.evaluate_middle(loop, correction_(ahead(now, dt() / 2)), desired));
@@ -227,7 +213,7 @@ class LimitedState {
         }
       }
     }
-    if (!evaluates && !(kSecondOrder && one_acceleration)) {
+    if (!evaluates && !(kSecondOrder && has_middle)) {
       // With the Jacobian in the middle of the tick, joints that compensate for saturated joints do not disturb the
       // tip.
       loop.arm.kinematics(tick_.middle_of(next.q), loop.kinematics);

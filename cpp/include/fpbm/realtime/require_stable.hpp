@@ -1,10 +1,12 @@
 #pragma once
 
 #include <type_traits>
+#include <utility>
 
 #include "fpbm/core/level.hpp"
 #include "fpbm/core/validation.hpp"
 #include "fpbm/sim/stability.hpp"
+#include "fpbm/task/task_gains.hpp"
 
 namespace fpbm {
 
@@ -86,6 +88,10 @@ inline constexpr bool kHasGains = false;
 template <typename Scheme>
 inline constexpr bool kHasGains<Scheme, std::void_t<decltype(Scheme::k1), decltype(Scheme::k2)>> = true;
 template <typename Scheme, typename = void>
+inline constexpr bool kKnowsGains = false;
+template <typename Scheme>
+inline constexpr bool kKnowsGains<Scheme, std::void_t<decltype(std::declval<const Scheme&>().gains())>> = true;
+template <typename Scheme, typename = void>
 inline constexpr bool kHasGain = false;
 template <typename Scheme>
 inline constexpr bool kHasGain<Scheme, std::void_t<decltype(Scheme::k)>> = true;
@@ -93,6 +99,20 @@ template <typename Scheme, typename = void>
 inline constexpr bool kHasSprings = false;
 template <typename Scheme>
 inline constexpr bool kHasSprings<Scheme, std::void_t<decltype(Scheme::null_space.stiffness_range())>> = true;
+
+/// Feedback gains of a scheme at acceleration level, or zero for a scheme without the members of this library.
+template <typename Scalar, typename Scheme>
+[[nodiscard]] TaskGains<Scalar> gains_of(const Scheme& scheme) noexcept {
+  if constexpr (kWraps<Scheme>) {
+    return gains_of<Scalar>(scheme.scheme);
+  } else if constexpr (kHasGains<Scheme>) {
+    return TaskGains<Scalar>::unchecked(scheme.k1, scheme.k2);
+  } else if constexpr (kKnowsGains<Scheme>) {
+    return scheme.gains();
+  } else {
+    return TaskGains<Scalar>::unchecked(Scalar(0), Scalar(0));
+  }
+}
 
 /// Throws std::invalid_argument if a tick does not damp the errors that a scheme feeds back: the task error, with k₁
 /// and k₂ or k, and with the tracker's integral; the null-space error, with the smallest and the largest stiffness of

@@ -7,6 +7,7 @@
 #include "fpbm/core/types.hpp"
 #include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/linalg/sums.hpp"
+#include "fpbm/realtime/continue_tick.hpp"
 #include "fpbm/realtime/tick_motion.hpp"
 
 namespace fpbm {
@@ -52,16 +53,19 @@ struct TickState {
   }
 
   /// Updates `loop` to the middle of a tick that continues the acceleration of the last tick
-  /// (StackKinematics::continue_tick()). Before the call, `loop` has the points at the start of the tick.
-  template <typename Loop, typename References>
-  void update_middle(Loop& loop, const References& references) const noexcept {
+  /// (continue_tick()). Returns the reference in the middle. Before the call, `loop` has the points at the start of the
+  /// tick. gains: of the scheme.
+  template <typename Loop, typename References, typename Gains>
+  [[nodiscard]] auto update_middle(Loop& loop, const References& references, const Gains& gains) const noexcept {
     const auto tip = loop.kinematics.tip;
     loop.update(Loop::packed(motion.middle(joints, last)));
-    const auto reference = Space::template difference<Scalar>(references.stages[1].x, references.stages[0].x);
+    const auto expected = Space::template difference<Scalar>(references.stages[1].x, references.stages[0].x);
     const auto moved = Space::template difference<Scalar>(loop.kinematics.tip, tip);
-    loop.kinematics.continue_tick(motion.dt,
-                                  entrywise(moved, [&](Eigen::Index i) { return reference.coeff(i) - moved.coeff(i); }),
-                                  {loop.state.qd, last, change});
+    auto middle = references.middle();
+    continue_tick(loop.kinematics, middle, gains, motion.dt,
+                  entrywise(moved, [&](Eigen::Index i) { return expected.coeff(i) - moved.coeff(i); }),
+                  TickBefore<N, Scalar>{loop.state.qd, last, change});
+    return middle;
   }
 
   /// Evaluates the desired motion and the kinematics in the middle of a tick that continues the acceleration of the

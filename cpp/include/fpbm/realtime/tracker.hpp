@@ -90,7 +90,7 @@ class Tracker {
     DefaultDamping<Scalar> damping = options.damping(arm.dof(), first_rows(kinematics).rows());
     damping.continuous = continuous_;
     give_damping(scheme_, damping);
-    const bool continues = kLevel == Level::kAcceleration ? has_several_tasks(arm_) : has_lower_levels(kinematics);
+    const bool continues = kLevel == Level::kAcceleration || has_lower_levels(kinematics);
     require_stable(scheme_, TickOfGains<Scalar>{options.dt, options.integral_gain, continues});
     if constexpr (kGuarded) limited_.guard().require_clear(limits, start, qdd0);
     limited_.begin_at(kinematics.tip, kinematics.length);
@@ -125,11 +125,11 @@ class Tracker {
     Loop loop{arm_, scheme_, {}, state, filled<JointVector>(state.q.size())};
     X x = Loop::packed(state);
     X dx = x;
-    bool one_acceleration = limited_.has_one_acceleration(arm_);
-    if constexpr (kIsProduct<Space>) {
-      if (one_acceleration) arm_.points(state.q, loop.kinematics);
+    if constexpr (Loop::kSecondOrder) {
+      points(state.q, loop.kinematics);
+    } else {
+      loop.update(x);
     }
-    if (!one_acceleration) loop.update(x);
     remove_turns(arm_, loop.kinematics.tip, continuous_, references.stages);
     if constexpr (kHasLevels) {
       if (limited_.keeps_stopping()) held_level_.hold(references, loop.kinematics.tip, loop.kinematics.length);
@@ -142,31 +142,29 @@ class Tracker {
     if (correction.active()) {
       for (Target& stage : references.stages) stage = correction(stage);
     }
-    const auto derivative = [&](Scalar seconds, const X& stage_x, X& stage_dx) noexcept {
-      return loop.evaluate(references(seconds), stage_x, stage_dx);
-    };
     JointState next = state;
     JointVector field = state.qd;
     const auto rows = limited_.rows();
-    if (one_acceleration) {
-      if constexpr (kIsProduct<Space>) limited_.tick().update_middle(loop, references);
-      resolve(loop, references.middle(), dx, result);
+    bool has_middle = Loop::kSecondOrder;
+    if constexpr (Loop::kSecondOrder) {
+      resolve(loop, limited_.tick().update_middle(loop, references, gains_of<Scalar>(scheme_)), dx, result);
       if (!failed(result.status)) next = limited_.tick().after(loop.qdd);
     } else {
+      const auto derivative = [&](Scalar seconds, const X& stage_x, X& stage_dx) noexcept {
+        return loop.evaluate(references(seconds), stage_x, stage_dx);
+      };
       resolve(loop, references.stages[0], dx, result);
       field = column(dx, 0);
-      one_acceleration = limited_.evaluate_middle_if_limited(loop, references.stages[1], rows,
-                                                             column(dx, dx.cols() - 1), next, result);
-      if (!one_acceleration) {
+      has_middle = limited_.evaluate_middle_of_guarded(loop, references.stages[1], field, next, result);
+      if (!has_middle) {
         if (!failed(result.status)) {
           result.status = worse(result.status, RK4::step(derivative, Scalar(0), limited_.dt(), dx, x));
         }
         next.q = column(x, 0);
-        if constexpr (Loop::kSecondOrder) next.qd = column(x, 1);
       }
     }
     if (lower_levels_.rests() && !failed(result.status)) next = limited_.tick().slowed();
-    limited_.finish_tick(loop, now, rows, next, field, one_acceleration, result);
+    limited_.finish_tick(loop, now, rows, next, field, has_middle, result);
     lower_levels_.report(result);
     report_levels(loop.kinematics, now.x, result);
     lower_levels_.end_tick(!limited_.stopping() && !failed(result.status), limited_.state().qd,
@@ -174,24 +172,35 @@ class Tracker {
     return result;
   }
 
-  /// For a tick whose RK4 step is computed elsewhere (TrackerBatch). begin(): error at the start of the tick. Returns
-  /// whether corrected() must replace the references before the step. finish(): `now` is the reference at the start of
-  /// the tick, not corrected. `middle` is the corrected reference in the middle of the tick. `next` is the state after
-  /// the step. `at_start` is the motion at the start: joint velocities, or accelerations at acceleration level.
+  /// For a tick whose desired motion is computed elsewhere (TrackerBatch). begin(): error at the start of the tick.
+  /// Returns whether corrected() must replace the references before the motion is computed. finish(): `now` is the
+  /// reference at the start of the tick, not corrected. `references` are corrected. `next` is the state after the
+  /// desired motion. `field` contains the joint velocities at the start at velocity level.
   bool begin(const Vector<Space::kRows, Scalar>& error, Scalar length) noexcept {
     begin_correction(error, length);
     return limited_.correction().active();
   }
   [[nodiscard]] Target corrected(const Target& reference) const noexcept { return limited_.correction()(reference); }
-  Status finish(const Target& now, const Target& middle, JointState next, const JointVector& at_start) noexcept {
+  Status finish(const Target& now, const References& references, JointState next, const JointVector& field) noexcept {
     Result result = limited_.idle(state());
     result.error = limited_.correction().error();
     Loop loop{arm_, scheme_, {}, state(), filled<JointVector>(state().q.size())};
     const auto rows = limited_.rows();
-    const bool one_acceleration = limited_.evaluate_middle_if_limited(loop, middle, rows, at_start, next, result);
-    limited_.finish_tick(loop, now, rows, next, at_start, one_acceleration, result);
+    bool has_middle = Loop::kSecondOrder;
+    if constexpr (Loop::kSecondOrder) {
+      if (!limited_.is_free(rows, next)) {
+        points(state().q, loop.kinematics);
+        (void)limited_.tick().update_middle(loop, references, gains_of<Scalar>(scheme_));
+      }
+    } else {
+      has_middle = limited_.evaluate_middle_of_guarded(loop, references.stages[1], field, next, result);
+    }
+    limited_.finish_tick(loop, now, rows, next, field, has_middle, result);
     return result.status;
   }
+
+  /// Acceleration of the last tick and its change from the tick before (TickState).
+  [[nodiscard]] const TickState<kLevel, Space, N, Scalar>& tick_state() const noexcept { return limited_.tick(); }
 
   /// Acceleration within the limits for a measured state that is at most options.measured_delay ticks old. The
   /// tracker's own state does not change. Never stalls: without feedback of the tip, a measured arm would sag.
@@ -270,6 +279,15 @@ class Tracker {
   using Loop = ClosedLoop<Arm, Scheme, Space>;
   using Measured = std::conditional_t<kLevel == Level::kAcceleration, MeasuredLimiter<N, Scalar>, NoMeasuredLimiter>;
   using X = typename Loop::X;
+
+  /// Points of the tasks at q, without derivatives of J.
+  void points(const JointVector& q, Kinematics<Space, N, Scalar>& kinematics) const noexcept {
+    if constexpr (kIsProduct<Space>) {
+      arm_.points(q, kinematics);
+    } else {
+      arm_.kinematics(q, kinematics);
+    }
+  }
 
   void measure_error(const Kinematics<Space, N, Scalar>& kinematics, const Target& reference, Result& result) noexcept {
     result.error = task_error(kinematics, reference.x);

@@ -62,7 +62,11 @@ class TrackerBatch {
     X x(sample.q.size(), Loop::kSecondOrder ? 2 : 1);
     x.col(0) = sample.q;
     if constexpr (Loop::kSecondOrder) x.col(1) = sample.qd;
-    loop.update(x);
+    if constexpr (Loop::kSecondOrder) {
+      arm_.kinematics(sample.q, loop.kinematics);
+    } else {
+      loop.update(x);
+    }
     TickReferences<Space, In> references = displacements.template from<In>(start_);
     sample.tip = loop.kinematics.tip;
     sample.J = loop.kinematics.J;
@@ -73,10 +77,10 @@ class TrackerBatch {
       if (trackers_[lane].begin(lane_of(sample.error, lane), length)) correct(references, lane);
     }
     X dx = x;
-    const Mask<In> stepped = step(loop, references, x, dx);
+    const Mask<In> stepped = Loop::kSecondOrder ? one_evaluation(loop, references, x) : step(loop, references, x, dx);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const Status status =
-          stepped[lane] ? finish(lane, sample.reference, references.stages[1], x, dx) : alone(lane, displacements);
+          stepped[lane] ? finish(lane, sample.reference, references, x, dx) : alone(lane, displacements);
       status_[lane] = worse(status_[lane], status);
       set_lane(sample.qdd, lane, Vector<N, Scalar>(trackers_[lane].acceleration()));
     }
@@ -96,7 +100,28 @@ class TrackerBatch {
     }
   }
 
-  /// RK4 step after loop.update(). Sets dx to dx/dt at the start. Returns the lanes in which the step is finite.
+  /// Desired motion of a tick at acceleration level (Tracker::advance()). Before the call, `loop` has the tips at the
+  /// start of the tick. Sets x to the state after the tick. Returns the lanes in which the motion is finite.
+  [[nodiscard]] Mask<In> one_evaluation(Loop& loop, const TickReferences<Space, In>& references, X& x) noexcept {
+    if constexpr (Loop::kSecondOrder) {
+      TickState<Level::kAcceleration, Space, N, In> state{
+          {In(references.dt)}, loop.state, loop.state.qd, loop.state.qd};
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        set_lane(state.last, lane, Vector<N, Scalar>(trackers_[lane].tick_state().last));
+        set_lane(state.change, lane, Vector<N, Scalar>(trackers_[lane].tick_state().change));
+      }
+      X dx = x;
+      const auto middle = state.update_middle(loop, references, gains_of<In>(scheme_));
+      if (failed(loop.resolve(middle, dx))) return Mask<In>(false);
+      const State<N, In> next = state.after(loop.qdd);
+      x.col(0) = next.q;
+      x.col(1) = next.qd;
+    }
+    const In zero = x.sum() * In(0);  // Inf and NaN make the sum NaN.
+    return zero == In(0);
+  }
+
+  /// RK4 step at velocity level, after loop.update(). Sets dx to dx/dt at the start. Returns the lanes in which the step is finite.
   [[nodiscard]] static Mask<In> step(Loop& loop, const TickReferences<Space, In>& references, X& x, X& dx) noexcept {
     const auto derivative = [&](Scalar seconds, const X& stage_x, X& stage_dx) noexcept {
       return loop.evaluate(references(seconds), stage_x, stage_dx);
@@ -108,11 +133,14 @@ class TrackerBatch {
     return zero == In(0);
   }
 
-  /// Ends the tick of a tracker. x: state after the step. dx: dx/dt at the start.
-  [[nodiscard]] Status finish(std::size_t lane, const Reference<Space, In>& now, const Reference<Space, In>& middle,
-                              const X& x, const X& dx) noexcept {
+  /// Ends the tick of a tracker. x: state after the desired motion. dx: joint velocities at the start, at velocity
+  /// level.
+  [[nodiscard]] Status finish(std::size_t lane, const Reference<Space, In>& now,
+                              const TickReferences<Space, In>& all, const X& x, const X& dx) noexcept {
     State<N, Scalar> next{column(x, 0, lane), column(x, x.cols() - 1, lane)};
-    return trackers_[lane].finish(of_lane(now, lane), of_lane(middle, lane), next, column(dx, dx.cols() - 1, lane));
+    TickReferences<Space, Scalar> references{{}, all.dt};
+    for (std::size_t i = 0; i < 3; ++i) references.stages[i] = of_lane(all.stages[i], lane);
+    return trackers_[lane].finish(of_lane(now, lane), references, next, column(dx, 0, lane));
   }
 
   /// Computes the whole tick of a tracker.

@@ -16,8 +16,18 @@ struct TaskGains {
     validation::require_non_negative("k1", k1);
     validation::require_non_negative("k2", k2);
   }
+  /// Gains that have been validated.
+  [[nodiscard]] static TaskGains unchecked(Scalar k1, Scalar k2) noexcept {
+    TaskGains gains;
+    gains.k1 = k1;
+    gains.k2 = k2;
+    return gains;
+  }
   /// For velocity level.
   explicit TaskGains(Scalar k) : k1(0), k2(k) { validation::require_non_negative("k", k); }
+
+ private:
+  TaskGains() = default;
 };
 
 }  // namespace fpbm

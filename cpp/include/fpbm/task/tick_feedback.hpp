@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "fpbm/core/mask.hpp"
+
 namespace fpbm {
 
 /// Feedback of a task. In a tick of length h with one acceleration, the commanded task acceleration is
@@ -21,7 +23,7 @@ namespace fpbm {
 /// In float, 2(e' − e)/h is mostly round-off error. Therefore, ė' is used instead, with s = (g − k₂'h²/8)/(1 + g).
 template <typename Scalar = double>
 struct TickFeedback {
-  static constexpr bool kByPositions = std::numeric_limits<Scalar>::digits > 24;  ///< Whether e' − e is used.
+  static constexpr bool kByPositions = std::numeric_limits<Number<Scalar>>::digits > 24;  ///< Whether e' − e is used.
 
   Scalar velocity_gain;                ///< k₁'/(1 + g) [1/s].
   Scalar position_gain;                ///< k₂'/(1 + g) [1/s²].
