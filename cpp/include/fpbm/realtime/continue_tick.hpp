@@ -1,5 +1,9 @@
 #pragma once
 
+#include <cmath>
+#include <cstddef>
+#include <tuple>
+
 #include "fpbm/core/mask.hpp"
 #include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/linalg/product.hpp"
@@ -11,6 +15,25 @@
 #include "fpbm/task/tick_feedback.hpp"
 
 namespace fpbm {
+
+/// J ← J + lead J̇.
+template <int M, int N, typename Scalar>
+void add_lead(Matrix<M, N, Scalar>& J, const Scalar& lead, const Matrix<M, N, Scalar>& Jd) noexcept {
+  for (Eigen::Index j = 0; j < J.cols(); ++j) {
+    for (Eigen::Index i = 0; i < J.rows(); ++i) J.coeffRef(i, j) += lead * Jd.coeff(i, j);
+  }
+}
+
+/// (1 − e^(−kh))/h: the mean decay in a tick of an error that decays with the gain k.
+template <typename Scalar>
+[[nodiscard]] Scalar mean_decay(const Scalar& k, const Scalar& h) noexcept {
+  using std::expm1;
+  if constexpr (kInLanes<Scalar>) {
+    return Scalar([&](auto lane) { return -std::expm1(-k[lane] * h[lane]) / h[lane]; });
+  } else {
+    return -expm1(-k * h) / h;
+  }
+}
 
 /// Prepares the middle of a tick that continues the acceleration of the previous tick (docs/equations.md, A tick with
 /// one acceleration): J ← J + h'J̇, and the acceleration of the reference changes, so that the law of a scheme with the
@@ -49,11 +72,7 @@ void continue_tick(Kinematics<Space, N, Scalar>& kinematics, Reference<Space, Sc
            gains.k1 * reference.xd.coeff(i) + (feedback.position_gain - gains.k2) * error.coeff(i) + rows.coeff(i) +
            rates.coeff(i);
   });
-  for (Eigen::Index j = 0; j < kinematics.J.cols(); ++j) {
-    for (Eigen::Index i = 0; i < kinematics.J.rows(); ++i) {
-      kinematics.J.coeffRef(i, j) += feedback.lead * kinematics.Jd.coeff(i, j);
-    }
-  }
+  add_lead(kinematics.J, feedback.lead, kinematics.Jd);
 }
 
 /// For a stack: each task has its gains.
@@ -62,6 +81,55 @@ void continue_tick(Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics, con
                    const TaskGains<Scalar>&, const Scalar& h, const Vector<StackSpace<Levels...>::kRows, Scalar>& change,
                    const TickBefore<N, Scalar>& before) noexcept {
   kinematics.continue_tick(h, change, before);
+}
+
+/// Prepares the middle of a tick at velocity level that continues the velocity u' of the previous tick: J ← J + hJ̇/2,
+/// and the velocity of the reference changes, so that the law of a scheme with the gain k, J u = xd + k (x ⊖ f(q)),
+/// becomes
+///
+///   (J + hJ̇/2) u = xd + (1 − e^(−kh))/h e + J u' + hJ̇u'/4 − 2(x' − x₀)/h.
+///
+/// The error then decays by e^(−kh) in each tick, up to terms of h⁴ (docs/equations.md, A tick at velocity level).
+/// error: e at the start of the tick. moved: x' − x₀, displacement of the tip to the middle. In float, 2(x' − x₀)/h is
+/// mostly round-off error. Therefore, J u' − hJ̇u'/4 is used instead.
+template <typename Space, int N, typename Scalar>
+void continue_tick_of_velocity(Kinematics<Space, N, Scalar>& kinematics, Reference<Space, Scalar>& reference,
+                               const TaskGains<Scalar>& gains, const Scalar& h,
+                               const Vector<Space::kRows, Scalar>& start_error,
+                               const Vector<Space::kRows, Scalar>& moved, const Vector<N, Scalar>& u) noexcept {
+  using Twist = Vector<Space::kRows, Scalar>;
+  constexpr bool kByPositions = TickFeedback<Scalar>::kByPositions;
+  const Scalar rate = mean_decay(gains.k2, h);
+  const Twist error = Space::template difference<Scalar>(reference.x, kinematics.tip);
+  const Twist rates = product(kinematics.Jd, u);
+  const Twist rows = product(kinematics.J, u);
+  reference.xd = entrywise(error, [&](Eigen::Index i) {
+    const Scalar offset = kByPositions ? rows.coeff(i) + h / Scalar(4) * rates.coeff(i) - Scalar(2) / h * moved.coeff(i)
+                                       : h / Scalar(2) * rates.coeff(i);
+    return reference.xd.coeff(i) + rate * start_error.coeff(i) + offset - gains.k2 * error.coeff(i);
+  });
+  add_lead(kinematics.J, h / Scalar(2), kinematics.Jd);
+}
+
+/// For a stack: each task has its gain.
+template <typename... Levels, int N, typename Scalar>
+void continue_tick_of_velocity(Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics,
+                               Reference<StackSpace<Levels...>, Scalar>& reference, const TaskGains<Scalar>&,
+                               const Scalar& h, const Vector<StackSpace<Levels...>::kRows, Scalar>& start_error,
+                               const Vector<StackSpace<Levels...>::kRows, Scalar>& moved,
+                               const Vector<N, Scalar>& u) noexcept {
+  StackSpace<Levels...>::each([&](auto space, auto i, int row) noexcept {
+    using Part = decltype(space);
+    auto& gain = std::get<decltype(i)::value>(kinematics.tasks).feedback.position_gain;
+    const Scalar rate = mean_decay(gain, h);
+    gain = Scalar(0);
+    for (int j = row; j < row + Part::kRows; ++j) {
+      reference.xd.coeffRef(j) += rate * start_error.coeff(j);
+      if (TickFeedback<Scalar>::kByPositions) reference.xd.coeffRef(j) -= Scalar(2) / h * moved.coeff(j);
+    }
+  });
+  kinematics.tick = h;
+  std::apply([&](auto&... level) { (level.continue_velocity(h, u), ...); }, kinematics.levels);
 }
 
 }  // namespace fpbm

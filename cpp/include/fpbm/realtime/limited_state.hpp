@@ -21,9 +21,7 @@ namespace fpbm {
 
 /// State of a Tracker from tick to tick. finish_tick() ends a tick.
 ///
-/// If an RK4 step keeps every bound, the tick is this step. Otherwise the mean motion of the step is limited (Limiter).
-/// If only the position at the end of the step violates a bound, the tick has the mean acceleration of the step
-/// throughout. 
+/// If the desired motion keeps every bound, the tick has this motion. Otherwise the motion is limited (Limiter).
 template <Level kLevel, typename Space, int N, typename Scalar, typename Guard_>
 class LimitedState {
  public:
@@ -101,39 +99,18 @@ class LimitedState {
     return !stopping_ && rows.admit(tick_.motion_to(next)) && admits(next);
   }
 
-  /// At velocity level, if the guard adds motion away from shapes, the tick has one velocity, which is evaluated in the
-  /// middle of the tick, and no RK4 step. The function then returns true, sets `next` to the state after the tick, and
-  /// leaves the kinematics of the middle in `loop`. reference: in the middle of the tick. field: joint velocities at
-  /// the start [rad/s].
-  template <typename Loop, typename Target>
-  [[nodiscard]] bool evaluate_middle_of_guarded([[maybe_unused]] Loop& loop, [[maybe_unused]] const Target& reference,
-                                                [[maybe_unused]] JointVector field, [[maybe_unused]] JointState& next,
-                                                [[maybe_unused]] Result& result) const noexcept {
-    if constexpr (kGuarded) {
-      if (failed(result.status) || !guard_.moves_away()) return false;
-      result.status = worse(result.status, tick_.evaluate_middle(loop, reference, field));
-      next = tick_.after(field);
-      return true;
-    }
-    return false;
-  }
-
   /// Ends a tick: limits the desired motion, and updates the state, the result, and the detection of a stall. If the
   /// arm could not stop clear of shapes after this motion, the stopping trajectory replaces the motion.
   ///
-  /// next: state to which the desired motion leads. At velocity level, only next.q is read. field: velocities of the
-  /// scheme at the start of the tick [rad/s], read at velocity level only. now: reference at the start, not corrected.
-  /// rows: bounds on the motion from the guard. has_middle: whether `loop` has the kinematics in the middle of the
-  /// tick. Otherwise, the kinematics are evaluated if the motion must be limited. result: has the status of the
-  /// desired motion, and the error with which the correction began.
+  /// loop: has the kinematics of the desired motion. now: reference at the start, not corrected. rows: bounds on the
+  /// motion from the guard. next: state after the desired motion. result: has the status of the desired motion, and the
+  /// error with which the correction began.
   template <typename Loop, typename Target, typename Rows>
-  void finish_tick(Loop& loop, const Target& now, Rows rows, JointState next, const JointVector& field,
-                   bool has_middle, Result& result) noexcept {
+  void finish_tick(const Loop& loop, const Target& now, Rows rows, JointState next, Result& result) noexcept {
     const bool damped = result.status == Status::kDamped;
     if constexpr (kGuarded) {
       progress_.watch_shapes(tick_.joints.qd.isZero(Scalar(0)), guard_.near_distance_sum(), correction_.length());
     }
-    make_admissible(next);
     if constexpr (kGuarded) {
       if (guard_.moves_away() && !failed(result.status)) {
         next =
@@ -147,7 +124,7 @@ class LimitedState {
     if (recovering) {
       next = recovery_tick(rows, result);
     } else if (stopping_ || result.status >= Status::kStalled || !rows.admit(tick_.motion_to(next)) || !admits(next)) {
-      next = limited_tick(loop, now, rows, next, field, has_middle, result);
+      next = limited_tick(loop, now, rows, next, result);
     }
     if constexpr (kGuarded) keep_clear(next, result);
     result.q = next.q;
@@ -164,11 +141,6 @@ class LimitedState {
   /// with 0.4, one with 0.6, and none with 0.7.
   static constexpr Scalar kReserve = Scalar(0.7);
 
-  /// Velocity level: the tick has the mean velocity of the RK4 step.
-  void make_admissible(JointState& next) const noexcept {
-    if constexpr (!kSecondOrder) next.qd = tick_.motion.rate(tick_.joints.q, next.q);
-  }
-
   /// State after a tick of a recovery.
   template <typename Rows>
   [[nodiscard]] JointState recovery_tick(const Rows& rows, Result& result) const noexcept {
@@ -181,46 +153,19 @@ class LimitedState {
   /// State after a tick of the limited motion, if the arm brakes or a bound does not admit the desired motion. The
   /// arguments are as in finish_tick().
   template <typename Loop, typename Target, typename Rows>
-  [[nodiscard]] JointState limited_tick(Loop& loop, const Target& now, const Rows& rows, const JointState& next,
-                                        const JointVector& field, bool has_middle,
+  [[nodiscard]] JointState limited_tick(const Loop& loop, const Target& now, const Rows& rows, const JointState& next,
                                         Result& result) const noexcept {
-    JointVector desired = tick_.motion_to(next);
     Scalar fraction(1);  // Fraction of the velocities of the scheme.
+    if constexpr (!kSecondOrder) {
+      if (!failed(result.status)) fraction = followable_part(loop, now);
+    }
     const auto slowed = [&](const JointVector& u) {
       return entrywise(u, [&](Eigen::Index i) { return fraction * u.coeff(i); });
     };
-    if constexpr (!kSecondOrder) {
-      if (!failed(result.status)) {
-        const auto reference_after = [&](Scalar seconds) noexcept {
-          auto correction = correction_;
-          approach_postures<kLevel, Space>(loop.arm, limits(), correction,
-                                           [&](int joint) { return seconds * field.coeff(joint); });
-          return correction(now);
-        };
-        fraction = followable_fraction(loop, limits(), reference_after, tick_.joints.q, field);
-        if (fraction < Scalar(1)) desired = slowed(field);
-      }
-    }
-    const bool several = has_lower_levels(loop.kinematics);
-    const bool evaluates =
-        !kSecondOrder && !failed(result.status) && (several || has_middle || is_nearly_at_rest(result));
-    if constexpr (!kSecondOrder) {
-      if (evaluates) {
-        result.status = worse(result.status, tick_.evaluate_middle(loop, correction_(ahead(now, dt() / 2)), desired));
-        if (fraction < Scalar(1)) desired = slowed(desired);
-        if constexpr (kGuarded) {
-          if (guard_.moves_away()) desired += null_space_motion(jacobian_in_metres(loop.kinematics), guard_.away());
-        }
-      }
-    }
-    if (!evaluates && !(kSecondOrder && has_middle)) {
-      // With the Jacobian in the middle of the tick, joints that compensate for saturated joints do not disturb the
-      // tip.
-      loop.arm.kinematics(tick_.middle_of(next.q), loop.kinematics);
-    }
+    const JointVector desired = slowed(tick_.motion_to(next));
     JointVector first = desired;
     if constexpr (kHasLevels) {
-      if (several) first = slowed(loop.first);
+      if (has_lower_levels(loop.kinematics)) first = slowed(loop.first);
     }
     const JointVector u = limited_motion(loop.kinematics, desired, first, rows, result);
     if (fraction < Scalar(1)) {
@@ -228,6 +173,20 @@ class LimitedState {
       result.status = worse(result.status, Status::kSlowed);
     }
     return tick_.after(u);
+  }
+
+  /// followable_fraction() at the start of the tick. now: reference at the start, not corrected.
+  template <typename Loop, typename Target>
+  [[nodiscard]] Scalar followable_part(Loop loop, const Target& now) const noexcept {
+    JointVector field = tick_.joints.q;
+    if (failed(loop.evaluate(correction_(now), tick_.joints.q, field))) return Scalar(1);
+    const auto reference_after = [&](Scalar seconds) noexcept {
+      auto correction = correction_;
+      approach_postures<kLevel, Space>(loop.arm, limits(), correction,
+                                       [&](int joint) { return seconds * field.coeff(joint); });
+      return correction(now);
+    };
+    return followable_fraction(loop, limits(), reference_after, tick_.joints.q, field);
   }
 
   /// Desired motion within the limits. If the arm has stalled, or each joint brakes by itself (brakes()), the result is
@@ -309,15 +268,6 @@ class LimitedState {
   /// Whether the limits admit a tick to the state `next`.
   [[nodiscard]] bool admits(const JointState& next) const noexcept {
     return limiter_.admits(tick_.joints, next, tick_.last);
-  }
-
-  /// Whether a tick at velocity level is limited although the arm hardly moves and no direction is damped: secondary
-  /// motion presses joints against bounds. The mean velocity of an RK4 step is then of a motion that the bounds do not
-  /// admit, and would move the tip by the order of h² times the cube of this motion. If the joints move by d = 1e-5 rad
-  /// in a tick, one evaluation in the middle of the tick has an error of about d³/24 of the length of the arm, 4e-17,
-  /// which is less than the round-off error: nothing is lost without RK4.
-  [[nodiscard]] bool is_nearly_at_rest(const Result& result) const noexcept {
-    return result.status == Status::kOk && largest_magnitude(tick_.joints.qd) * dt() < Scalar(1e-5);
   }
 
   TickState<kLevel, Space, N, Scalar> tick_;

@@ -100,13 +100,15 @@ inline constexpr bool kHasSprings = false;
 template <typename Scheme>
 inline constexpr bool kHasSprings<Scheme, std::void_t<decltype(Scheme::null_space.stiffness_range())>> = true;
 
-/// Feedback gains of a scheme at acceleration level, or zero for a scheme without the members of this library.
+/// Feedback gains of a scheme, or zero for a scheme without the members of this library.
 template <typename Scalar, typename Scheme>
 [[nodiscard]] TaskGains<Scalar> gains_of(const Scheme& scheme) noexcept {
   if constexpr (kWraps<Scheme>) {
     return gains_of<Scalar>(scheme.scheme);
   } else if constexpr (kHasGains<Scheme>) {
     return TaskGains<Scalar>::unchecked(scheme.k1, scheme.k2);
+  } else if constexpr (kHasGain<Scheme>) {
+    return TaskGains<Scalar>::unchecked(Scalar(0), scheme.k);
   } else if constexpr (kKnowsGains<Scheme>) {
     return scheme.gains();
   } else {

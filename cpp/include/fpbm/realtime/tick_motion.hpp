@@ -37,6 +37,11 @@ struct TickMotion {
     return {half.moved(state, qdd), plus(state.qd, qdd, half.dt)};
   }
 
+  /// State in the middle of a tick of constant velocity.
+  [[nodiscard]] JointState middle(const JointState& state) const noexcept {
+    return {plus(state.q, state.qd, dt / Scalar(2)), state.qd};
+  }
+
   /// (to − from)/dt.
   [[nodiscard]] JointVector rate(const JointVector& from, const JointVector& to) const noexcept {
     return entrywise(from, [&](Eigen::Index i) { return (to.coeff(i) - from.coeff(i)) / dt; });

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "fpbm/core/level.hpp"
 #include "fpbm/core/mask.hpp"
 #include "fpbm/task/reference.hpp"
 
@@ -23,11 +24,19 @@ struct TickReferences {
     return stages[seconds < dt ? (seconds > Number<Scalar>(0) ? 1 : 0) : 2];
   }
 
-  /// Reference of a tick with one acceleration (docs/equations.md, A tick with one acceleration): the reference in the
-  /// middle, with the acceleration xdd − h²x⁗/24 = xdd − (xdd₀ − 2xdd + xdd₁)/6. With this acceleration, positions
-  /// follow x at the ends of ticks.
+  /// Reference of a tick (docs/equations.md, A tick): the reference in the middle. At velocity level, with the mean
+  /// velocity of the tick, (xd₀ + 4xd + xd₁)/6. At acceleration level, with the acceleration
+  /// xdd − h²x⁗/24 = xdd − (xdd₀ − 2xdd + xdd₁)/6. With these, positions follow x at the ends of ticks.
+  template <Level kLevel>
   [[nodiscard]] Reference<Space, Scalar> middle() const noexcept {
     Reference<Space, Scalar> reference = stages[1];
+    if constexpr (kLevel == Level::kVelocity) {
+      for (Eigen::Index i = 0; i < reference.xd.size(); ++i) {
+        const Scalar xd = stages[1].xd.coeff(i);
+        reference.xd.coeffRef(i) += (stages[0].xd.coeff(i) - xd - xd + stages[2].xd.coeff(i)) / Scalar(6);
+      }
+      return reference;
+    }
     for (Eigen::Index i = 0; i < reference.xdd.size(); ++i) {
       const Scalar xdd = stages[1].xdd.coeff(i);
       const Scalar second_difference = stages[0].xdd.coeff(i) - xdd - xdd + stages[2].xdd.coeff(i);

@@ -40,11 +40,6 @@ struct TickState {
   [[nodiscard]] JointVector acceleration_to(const JointState& next) const noexcept {
     return motion.rate(joints.qd, next.qd);
   }
-  /// Posture in the middle of a tick that ends at the posture `end`.
-  [[nodiscard]] JointVector middle_of(const JointVector& end) const noexcept {
-    return entrywise(end, [&](Eigen::Index i) { return (joints.q.coeff(i) + end.coeff(i)) / Scalar(2); });
-  }
-
   /// Ends a tick at the state `next`, which was reached with the acceleration qdd.
   void store(JointState&& next, const JointVector& qdd) noexcept {
     change = entrywise(last, [&](Eigen::Index i) { return qdd.coeff(i) - last.coeff(i); });
@@ -52,31 +47,26 @@ struct TickState {
     joints = std::move(next);
   }
 
-  /// Updates `loop` to the middle of a tick that continues the acceleration of the last tick
-  /// (continue_tick()). Returns the reference in the middle. Before the call, `loop` has the points at the start of the
-  /// tick. gains: of the scheme.
-  template <typename Loop, typename References, typename Gains>
-  [[nodiscard]] auto update_middle(Loop& loop, const References& references, const Gains& gains) const noexcept {
-    const auto tip = loop.kinematics.tip;
-    loop.update(Loop::packed(motion.middle(joints, last)));
-    const auto expected = Space::template difference<Scalar>(references.stages[1].x, references.stages[0].x);
-    const auto moved = Space::template difference<Scalar>(loop.kinematics.tip, tip);
-    auto middle = references.middle();
-    continue_tick(loop.kinematics, middle, gains, motion.dt,
-                  entrywise(moved, [&](Eigen::Index i) { return expected.coeff(i) - moved.coeff(i); }),
-                  TickBefore<N, Scalar>{loop.state.qd, last, change});
+  /// Updates `loop` to the middle of a tick that continues the motion of the last tick (continue_tick()). Returns the
+  /// reference in the middle. Before the call, `loop` has the points at the start of the tick. gains: of the scheme.
+  template <typename Loop, typename References>
+  [[nodiscard]] auto update_middle(Loop& loop, const References& references,
+                                   const TaskGains<Scalar>& gains) const noexcept {
+    const auto start = loop.kinematics.tip;
+    loop.state = kLevel == Level::kAcceleration ? motion.middle(joints, last) : motion.middle(joints);
+    loop.arm.kinematics(loop.state.q, loop.state.qd, loop.kinematics);
+    const auto moved = Space::template difference<Scalar>(loop.kinematics.tip, start);
+    auto middle = references.template middle<kLevel>();
+    if constexpr (kLevel == Level::kAcceleration) {
+      const auto expected = Space::template difference<Scalar>(references.stages[1].x, references.stages[0].x);
+      continue_tick(loop.kinematics, middle, gains, motion.dt,
+                    entrywise(moved, [&](Eigen::Index i) { return expected.coeff(i) - moved.coeff(i); }),
+                    TickBefore<N, Scalar>{loop.state.qd, last, change});
+    } else {
+      const auto error = Space::template difference<Scalar>(references.stages[0].x, start);
+      continue_tick_of_velocity(loop.kinematics, middle, gains, motion.dt, error, moved, loop.state.qd);
+    }
     return middle;
-  }
-
-  /// Evaluates the desired motion and the kinematics in the middle of a tick that continues the acceleration of the
-  /// last tick. reference: in the middle of the tick.
-  template <typename Loop, typename Target>
-  [[nodiscard]] Status evaluate_middle(Loop& loop, const Target& reference, JointVector& desired) const noexcept {
-    const JointState middle = motion.middle(joints, last);
-    typename Loop::X dx = Loop::packed(middle);
-    const Status status = loop.evaluate(reference, Loop::packed(middle), dx);
-    if (!failed(status)) desired = column(dx, kLevel == Level::kAcceleration ? 1 : 0);
-    return status;
   }
 };
 

@@ -15,7 +15,6 @@
 #include "fpbm/realtime/turns.hpp"
 #include "fpbm/scheme/set_damping.hpp"
 #include "fpbm/sim/closed_loop.hpp"
-#include "fpbm/sim/rk4.hpp"
 #include "fpbm/singular/damped_gram.hpp"
 
 /// One tick of a control loop.
@@ -27,14 +26,12 @@ namespace fpbm {
 /// Moves an arm tick by tick with a scheme, within its joint limits and through singular postures, until the arm is at
 /// rest (docs/realtime.md).
 ///
-/// tick() integrates the tracker's own state by RK4. The result of tick() is a command for an arm that accepts
+/// tick() advances the tracker's own state (docs/equations.md, A tick). The result of tick() is a command for an arm that accepts
 /// positions or velocities and follows them closely. resolve_measured() computes the acceleration for a measured state,
 /// for a torque controller. Never pass a measured state to tick(): the feedback would act twice, and noise would enter
 /// the command.
 ///
-/// If an RK4 step keeps every bound, the tick is this step. Otherwise the mean motion of the step is limited (Limiter).
-/// At acceleration level, a tick of several tasks has one acceleration, and no RK4 step. A tick at whose start the
-/// limits do not admit the motion or damping is active also has one acceleration.
+/// A tick has one motion: the motion of the scheme in the middle of the tick, within the limits (Limiter).
 ///
 /// With a Guard<kLevel, N, Scalar> instead of Unguarded, the arm avoids self-collision and obstacles.
 template <typename Arm, typename Space, typename Scheme, typename Guard_ = Unguarded>
@@ -123,13 +120,7 @@ class Tracker {
     const auto& correction = limited_.correction();
     Result result = limited_.idle(state);
     Loop loop{arm_, scheme_, {}, state, filled<JointVector>(state.q.size())};
-    X x = Loop::packed(state);
-    X dx = x;
-    if constexpr (Loop::kSecondOrder) {
-      points(state.q, loop.kinematics);
-    } else {
-      loop.update(x);
-    }
+    points(state.q, loop.kinematics);
     remove_turns(arm_, loop.kinematics.tip, continuous_, references.stages);
     if constexpr (kHasLevels) {
       if (limited_.keeps_stopping()) held_level_.hold(references, loop.kinematics.tip, loop.kinematics.length);
@@ -142,29 +133,12 @@ class Tracker {
     if (correction.active()) {
       for (Target& stage : references.stages) stage = correction(stage);
     }
-    JointState next = state;
-    JointVector field = state.qd;
     const auto rows = limited_.rows();
-    bool has_middle = Loop::kSecondOrder;
-    if constexpr (Loop::kSecondOrder) {
-      resolve(loop, limited_.tick().update_middle(loop, references, gains_of<Scalar>(scheme_)), dx, result);
-      if (!failed(result.status)) next = limited_.tick().after(loop.qdd);
-    } else {
-      const auto derivative = [&](Scalar seconds, const X& stage_x, X& stage_dx) noexcept {
-        return loop.evaluate(references(seconds), stage_x, stage_dx);
-      };
-      resolve(loop, references.stages[0], dx, result);
-      field = column(dx, 0);
-      has_middle = limited_.evaluate_middle_of_guarded(loop, references.stages[1], field, next, result);
-      if (!has_middle) {
-        if (!failed(result.status)) {
-          result.status = worse(result.status, RK4::step(derivative, Scalar(0), limited_.dt(), dx, x));
-        }
-        next.q = column(x, 0);
-      }
-    }
+    JointState next = state;
+    resolve(loop, limited_.tick().update_middle(loop, references, gains_of<Scalar>(scheme_)), result);
+    if (!failed(result.status)) next = limited_.tick().after(loop.motion());
     if (lower_levels_.rests() && !failed(result.status)) next = limited_.tick().slowed();
-    limited_.finish_tick(loop, now, rows, next, field, has_middle, result);
+    limited_.finish_tick(loop, now, rows, next, result);
     lower_levels_.report(result);
     report_levels(loop.kinematics, now.x, result);
     lower_levels_.end_tick(!limited_.stopping() && !failed(result.status), limited_.state().qd,
@@ -175,27 +149,22 @@ class Tracker {
   /// For a tick whose desired motion is computed elsewhere (TrackerBatch). begin(): error at the start of the tick.
   /// Returns whether corrected() must replace the references before the motion is computed. finish(): `now` is the
   /// reference at the start of the tick, not corrected. `references` are corrected. `next` is the state after the
-  /// desired motion. `field` contains the joint velocities at the start at velocity level.
+  /// desired motion.
   bool begin(const Vector<Space::kRows, Scalar>& error, Scalar length) noexcept {
     begin_correction(error, length);
     return limited_.correction().active();
   }
   [[nodiscard]] Target corrected(const Target& reference) const noexcept { return limited_.correction()(reference); }
-  Status finish(const Target& now, const References& references, JointState next, const JointVector& field) noexcept {
+  Status finish(const Target& now, const References& references, const JointState& next) noexcept {
     Result result = limited_.idle(state());
     result.error = limited_.correction().error();
     Loop loop{arm_, scheme_, {}, state(), filled<JointVector>(state().q.size())};
     const auto rows = limited_.rows();
-    bool has_middle = Loop::kSecondOrder;
-    if constexpr (Loop::kSecondOrder) {
-      if (!limited_.is_free(rows, next)) {
-        points(state().q, loop.kinematics);
-        (void)limited_.tick().update_middle(loop, references, gains_of<Scalar>(scheme_));
-      }
-    } else {
-      has_middle = limited_.evaluate_middle_of_guarded(loop, references.stages[1], field, next, result);
+    if (!limited_.is_free(rows, next)) {
+      points(state().q, loop.kinematics);
+      (void)limited_.tick().update_middle(loop, references, gains_of<Scalar>(scheme_));
     }
-    limited_.finish_tick(loop, now, rows, next, field, has_middle, result);
+    limited_.finish_tick(loop, now, rows, next, result);
     return result.status;
   }
 
@@ -215,12 +184,11 @@ class Tracker {
       return result;
     }
     Loop loop{arm_, scheme_, {}, measured, filled<JointVector>(q.size())};
-    X dx = Loop::packed(measured);
-    loop.update(dx);
+    loop.update(Loop::packed(measured));
     std::array<Target, 1> now{reference};
     remove_turns(arm_, loop.kinematics.tip, continuous_, now);
     measure_error(loop.kinematics, now[0], result);
-    resolve(loop, limited_.correction()(now[0]), dx, result);
+    resolve(loop, limited_.correction()(now[0]), result);
     result.qdd = last_command_ = limit_measured(loop, measured_, limited_, measured, last_command_, result);
     report_levels(loop.kinematics, reference.x, result);
     return result;
@@ -300,7 +268,8 @@ class Tracker {
 
   /// Motion of the scheme after update(). σ is from the factorisation of the scheme, or from a factorisation of JJᵀ if
   /// the scheme does not report σ.
-  static void resolve(Loop& loop, const Target& reference, X& dx, Result& result) noexcept {
+  static void resolve(Loop& loop, const Target& reference, Result& result) noexcept {
+    X dx = Loop::packed(loop.state);
     result.sigma = Scalar(-1);
     result.status = loop.resolve(reference, dx, &result.sigma);
     if (result.sigma < Scalar(0)) result.sigma = least_singular_value_bound(first_rows(loop.kinematics));

@@ -86,7 +86,7 @@ struct ByLevels {
       xd.resize(level.rows());
       r.resize(level.rows());
       command_level<kIndex>(kinematics, reference, xd, r);
-      if constexpr (kLevel == Level::kAcceleration) subtract_drift(kinematics.tick, level, state.qd, r);
+      subtract_drift(kinematics.tick, level, state.qd, r);
       if constexpr (kIndex == 0) {
         result = filled<JointVector>(state.q.size());
         status = scheme.resolve_rows(r, xd, level.J, level.Jd, state, result, sigma);
@@ -125,13 +125,13 @@ struct ByLevels {
     (f(std::integral_constant<int, static_cast<int>(k)>{}), ...);
   }
 
-  /// r −= J̇ qd, or r −= drift in a tick with one acceleration.
+  /// r −= J̇ qd at acceleration level, or r −= drift in a tick.
   template <int M>
   static void subtract_drift(Scalar tick, const LevelRows<M, kDof, Scalar>& level, const JointVector& qd,
                              Vector<M, Scalar>& r) noexcept {
     if (tick > Scalar(0)) {
       r -= level.drift;
-    } else {
+    } else if constexpr (kLevel == Level::kAcceleration) {
       r -= product(level.Jd, qd);
     }
   }

@@ -44,6 +44,9 @@ struct ClosedLoop {
     return resolve(reference, dx);
   }
 
+  /// Result of the scheme in the last resolve() [rad/s²], or [rad/s] at velocity level.
+  [[nodiscard]] const Vector<N, Scalar>& motion() const noexcept { return kSecondOrder ? qdd : state.qd; }
+
   /// First part of evaluate(): state and kinematics at X.
   void update(const X& x) noexcept {
     state.q = column(x, 0);

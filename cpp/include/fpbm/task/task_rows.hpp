@@ -55,6 +55,20 @@ struct LevelRows {
       subtract_multiple(columns, -feedback.lead, rates, rows);
     }
   }
+
+  /// Linearises all rows about a tick at velocity level that continues the velocity u of the previous tick
+  /// (continue_tick_of_velocity()): J ← J + hJ̇/2, drift ← −(J u + hJ̇u/4), or −hJ̇u/2 in float.
+  void continue_velocity(Scalar h, const Vector<N, Scalar>& u) noexcept {
+    const Scalar of_rates = h / (TickFeedback<Scalar>::kByPositions ? Scalar(4) : Scalar(2));
+    for (Eigen::Index i = 0; i < J.rows(); ++i) drift.coeffRef(i) = Scalar(0);
+    for (Eigen::Index j = 0; j < J.cols(); ++j) {
+      Scalar* const columns = J.data() + j * J.rows();
+      const Scalar* const rates = Jd.data() + j * J.rows();
+      if (TickFeedback<Scalar>::kByPositions) subtract_multiple(drift.data(), u.coeff(j), columns, J.rows());
+      subtract_multiple(drift.data(), of_rates * u.coeff(j), rates, J.rows());
+      subtract_multiple(columns, -h / Scalar(2), rates, J.rows());
+    }
+  }
 };
 
 /// Rows of a level that is a posture of all N joints: row i of J is 1 for joints[i] and 0 for the other joints, and J̇
@@ -76,6 +90,14 @@ struct PostureRows {
                      const TickBefore<N, Scalar>& before) noexcept {
     for (int i = 0; i < N; ++i) {
       drift.coeffRef(i) = -feedback.previous_weight * before.qdd.coeff(joints[static_cast<std::size_t>(i)]);
+    }
+  }
+
+  /// See LevelRows::continue_velocity().
+  void continue_velocity(Scalar, const Vector<N, Scalar>& u) noexcept {
+    const bool by_positions = TickFeedback<Scalar>::kByPositions;
+    for (int i = 0; i < N; ++i) {
+      drift.coeffRef(i) = by_positions ? -u.coeff(joints[static_cast<std::size_t>(i)]) : Scalar(0);
     }
   }
 };
