@@ -54,6 +54,18 @@ template <typename Arm>
   return false;
 }
 
+/// Sets kinematics.tip and kinematics.length at q: by arm.points(q, kinematics), if the arm has this function,
+/// otherwise by arm.kinematics(q, kinematics).
+template <typename Arm, typename Vector, typename Kinematics>
+auto points_of(const Arm& arm, const Vector& q, Kinematics& kinematics, int) noexcept
+    -> decltype(arm.points(q, kinematics)) {
+  arm.points(q, kinematics);
+}
+template <typename Arm, typename Vector, typename Kinematics>
+void points_of(const Arm& arm, const Vector& q, Kinematics& kinematics, long) noexcept {
+  arm.kinematics(q, kinematics);
+}
+
 /// x ⊖ f(q), the error of the task [m, rad] for the target x.
 template <typename Space, int N, typename Scalar>
 [[nodiscard]] Vector<Space::kRows, Scalar> task_error(const Kinematics<Space, N, Scalar>& kinematics,

@@ -92,6 +92,12 @@ class SerialArm {
     pass_.slides() ? forward_pass<false, true>(q, q, out) : forward_pass<false, false>(q, q, out);
   }
 
+  /// Tip at q. J and Jd do not change.
+  template <typename Space>
+  void points(const Vector<N, Scalar>& q, Kinematics<Space, N, Scalar>& out) const noexcept {
+    pass_.slides() ? tip_only<true>(q, out) : tip_only<false>(q, out);
+  }
+
  private:
   template <int, typename>
   friend class SerialArm;
@@ -103,6 +109,21 @@ class SerialArm {
         tip_(arm.tip_.template cast<Scalar>()),
         length_(static_cast<Scalar>(arm.length_)),
         limits_(arm.limits_.template cast<Scalar>()) {}
+
+  /// Tip. Chains with and without prismatic joints have separate instantiations.
+  template <bool kSlides, typename Space>
+  [[gnu::flatten, gnu::noinline]] void tip_only(const Vector<N, Scalar>& q,
+                                                Kinematics<Space, N, Scalar>& out) const noexcept {
+    Screws<N, Scalar> axes;
+    Frame<Scalar> frame = pass_.template operator()<false, kSlides>(base_, q, q, axes, AlongChain{});
+    out.length = length_;
+    if constexpr (std::is_same_v<Space, Pose>) {
+      frame.turn(tip_.cosine.pair(), tip_.sine.pair());
+      frame.store(out.tip.p, out.tip.R);
+    } else {
+      frame.p.store(out.tip.data());
+    }
+  }
 
   /// Tip, J and Jd. Chains with and without prismatic joints have separate instantiations.
   template <bool kWithRate, bool kSlides, typename Space>

@@ -68,17 +68,18 @@ void continue_tick(Kinematics<Space, N, Scalar>& kinematics, Reference<Space, Sc
     }
   }();
   reference.xdd = entrywise(error, [&](Eigen::Index i) {
-    return (Scalar(1) - feedback.previous_weight) * reference.xdd.coeff(i) + feedback.velocity_gain * error_rate.coeff(i) -
-           gains.k1 * reference.xd.coeff(i) + (feedback.position_gain - gains.k2) * error.coeff(i) + rows.coeff(i) +
-           rates.coeff(i);
+    return (Scalar(1) - feedback.previous_weight) * reference.xdd.coeff(i) +
+           feedback.velocity_gain * error_rate.coeff(i) - gains.k1 * reference.xd.coeff(i) +
+           (feedback.position_gain - gains.k2) * error.coeff(i) + rows.coeff(i) + rates.coeff(i);
   });
   add_lead(kinematics.J, feedback.lead, kinematics.Jd);
 }
 
 /// For a stack: each task has its gains.
 template <typename... Levels, int N, typename Scalar>
-void continue_tick(Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics, const Reference<StackSpace<Levels...>, Scalar>&,
-                   const TaskGains<Scalar>&, const Scalar& h, const Vector<StackSpace<Levels...>::kRows, Scalar>& change,
+void continue_tick(Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics,
+                   const Reference<StackSpace<Levels...>, Scalar>&, const TaskGains<Scalar>&, const Scalar& h,
+                   const Vector<StackSpace<Levels...>::kRows, Scalar>& change,
                    const TickBefore<N, Scalar>& before) noexcept {
   kinematics.continue_tick(h, change, before);
 }

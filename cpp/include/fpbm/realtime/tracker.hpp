@@ -26,10 +26,10 @@ namespace fpbm {
 /// Moves an arm tick by tick with a scheme, within its joint limits and through singular postures, until the arm is at
 /// rest (docs/realtime.md).
 ///
-/// tick() advances the tracker's own state (docs/equations.md, A tick). The result of tick() is a command for an arm that accepts
-/// positions or velocities and follows them closely. resolve_measured() computes the acceleration for a measured state,
-/// for a torque controller. Never pass a measured state to tick(): the feedback would act twice, and noise would enter
-/// the command.
+/// tick() advances the tracker's own state (docs/equations.md, A tick). The result of tick() is a command for an arm
+/// that accepts positions or velocities and follows them closely. resolve_measured() computes the acceleration for a
+/// measured state, for a torque controller. Never pass a measured state to tick(): the feedback would act twice, and
+/// noise would enter the command.
 ///
 /// A tick has one motion: the motion of the scheme in the middle of the tick, within the limits (Limiter).
 ///
@@ -250,11 +250,7 @@ class Tracker {
 
   /// Points of the tasks at q, without derivatives of J.
   void points(const JointVector& q, Kinematics<Space, N, Scalar>& kinematics) const noexcept {
-    if constexpr (kIsProduct<Space>) {
-      arm_.points(q, kinematics);
-    } else {
-      arm_.kinematics(q, kinematics);
-    }
+    points_of(arm_, q, kinematics, 0);
   }
 
   void measure_error(const Kinematics<Space, N, Scalar>& kinematics, const Target& reference, Result& result) noexcept {

@@ -12,7 +12,6 @@
 #include "fpbm/scheme/set_damping.hpp"
 #include "fpbm/sim/closed_loop.hpp"
 #include "fpbm/sim/motion.hpp"
-#include "fpbm/sim/rk4.hpp"
 #include "fpbm/sim/rollout.hpp"
 #include "fpbm/sim/time_grid.hpp"
 
@@ -20,11 +19,11 @@ namespace fpbm {
 
 /// Trackers of one arm in parallel, one for each SIMD lane. All trackers follow the same path, each from its own tip.
 ///
-/// The RK4 step of a tick is computed in lanes. Each tracker ends its tick by itself. Therefore limits are kept
+/// The desired motion of a tick is computed in lanes. Each tracker ends its tick by itself. Therefore limits are kept
 /// exactly, and every tick equals the tick of its tracker alone from the same state, up to round-off. If limits are
 /// active for seconds, especially bounds on jerk, a motion amplifies round-off errors like a change of the start state
-/// (docs/sweeps.md). If the step of a lane is not finite (near a singular posture, or because the scheme fails), the
-/// tracker of this lane computes the whole tick. No lane influences another lane.
+/// (docs/sweeps.md). If the desired motion of a lane is not finite (near a singular posture, or because the scheme
+/// fails), the tracker of this lane computes the whole tick. No lane influences another lane.
 template <typename Tracker, typename Arm, typename Space, typename Scheme>
 class TrackerBatch {
  public:
@@ -59,14 +58,7 @@ class TrackerBatch {
       set_lane(sample.qd, lane, state.qd);
     }
     Loop loop{arm_, scheme_, {}, {sample.q, sample.qd}, sample.q};
-    X x(sample.q.size(), Loop::kSecondOrder ? 2 : 1);
-    x.col(0) = sample.q;
-    if constexpr (Loop::kSecondOrder) x.col(1) = sample.qd;
-    if constexpr (Loop::kSecondOrder) {
-      arm_.kinematics(sample.q, loop.kinematics);
-    } else {
-      loop.update(x);
-    }
+    arm_.kinematics(sample.q, loop.kinematics);
     TickReferences<Space, In> references = displacements.template from<In>(start_);
     sample.tip = loop.kinematics.tip;
     sample.J = loop.kinematics.J;
@@ -76,11 +68,11 @@ class TrackerBatch {
       const Scalar length = loop.kinematics.length[lane];
       if (trackers_[lane].begin(lane_of(sample.error, lane), length)) correct(references, lane);
     }
-    X dx = x;
-    const Mask<In> stepped = Loop::kSecondOrder ? one_evaluation(loop, references, x) : step(loop, references, x, dx);
+    State<N, In> next = loop.state;
+    const Mask<In> stepped = desired_motion(loop, references, next);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const Status status =
-          stepped[lane] ? finish(lane, sample.reference, references, x, dx) : alone(lane, displacements);
+          stepped[lane] ? finish(lane, sample.reference, references, next) : alone(lane, displacements);
       status_[lane] = worse(status_[lane], status);
       set_lane(sample.qdd, lane, Vector<N, Scalar>(trackers_[lane].acceleration()));
     }
@@ -100,56 +92,34 @@ class TrackerBatch {
     }
   }
 
-  /// Desired motion of a tick at acceleration level (Tracker::advance()). Before the call, `loop` has the tips at the
-  /// start of the tick. Sets x to the state after the tick. Returns the lanes in which the motion is finite.
-  [[nodiscard]] Mask<In> one_evaluation(Loop& loop, const TickReferences<Space, In>& references, X& x) noexcept {
-    if constexpr (Loop::kSecondOrder) {
-      TickState<Level::kAcceleration, Space, N, In> state{
-          {In(references.dt)}, loop.state, loop.state.qd, loop.state.qd};
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        set_lane(state.last, lane, Vector<N, Scalar>(trackers_[lane].tick_state().last));
-        set_lane(state.change, lane, Vector<N, Scalar>(trackers_[lane].tick_state().change));
-      }
-      X dx = x;
-      const auto middle = state.update_middle(loop, references, gains_of<In>(scheme_));
-      if (failed(loop.resolve(middle, dx))) return Mask<In>(false);
-      const State<N, In> next = state.after(loop.qdd);
-      x.col(0) = next.q;
-      x.col(1) = next.qd;
+  /// Desired motion of a tick (Tracker::advance()). Before the call, `loop` has the tips at the start of the tick. Sets
+  /// `next` to the state after the tick. Returns the lanes in which the motion is finite.
+  [[nodiscard]] Mask<In> desired_motion(Loop& loop, const TickReferences<Space, In>& references,
+                                        State<N, In>& next) noexcept {
+    TickState<Scheme::kLevel, Space, N, In> state{{In(references.dt)}, loop.state, loop.state.qd, loop.state.qd};
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      set_lane(state.last, lane, Vector<N, Scalar>(trackers_[lane].tick_state().last));
+      set_lane(state.change, lane, Vector<N, Scalar>(trackers_[lane].tick_state().change));
     }
-    const In zero = x.sum() * In(0);  // Inf and NaN make the sum NaN.
+    X dx = Loop::packed(loop.state);
+    const auto middle = state.update_middle(loop, references, gains_of<In>(scheme_));
+    if (failed(loop.resolve(middle, dx))) return Mask<In>(false);
+    next = state.after(loop.motion());
+    const In zero = (next.q.sum() + next.qd.sum()) * In(0);  // Inf and NaN make the sum NaN.
     return zero == In(0);
   }
 
-  /// RK4 step at velocity level, after loop.update(). Sets dx to dx/dt at the start. Returns the lanes in which the step is finite.
-  [[nodiscard]] static Mask<In> step(Loop& loop, const TickReferences<Space, In>& references, X& x, X& dx) noexcept {
-    const auto derivative = [&](Scalar seconds, const X& stage_x, X& stage_dx) noexcept {
-      return loop.evaluate(references(seconds), stage_x, stage_dx);
-    };
-    Status status = loop.resolve(references.stages[0], dx);
-    if (!failed(status)) status = RK4::step(derivative, Scalar(0), references.dt, dx, x);
-    if (failed(status)) return Mask<In>(false);
-    const In zero = x.sum() * In(0);  // Inf and NaN make the sum NaN.
-    return zero == In(0);
-  }
-
-  /// Ends the tick of a tracker. x: state after the desired motion. dx: joint velocities at the start, at velocity
-  /// level.
-  [[nodiscard]] Status finish(std::size_t lane, const Reference<Space, In>& now,
-                              const TickReferences<Space, In>& all, const X& x, const X& dx) noexcept {
-    State<N, Scalar> next{column(x, 0, lane), column(x, x.cols() - 1, lane)};
+  /// Ends the tick of a tracker. x: state after the desired motion.
+  [[nodiscard]] Status finish(std::size_t lane, const Reference<Space, In>& now, const TickReferences<Space, In>& all,
+                              const State<N, In>& next) noexcept {
     TickReferences<Space, Scalar> references{{}, all.dt};
-    for (std::size_t i = 0; i < 3; ++i) references.stages[i] = of_lane(all.stages[i], lane);
-    return trackers_[lane].finish(of_lane(now, lane), references, next, column(dx, 0, lane));
+    for (std::size_t i = 0; i < all.stages.size(); ++i) references.stages[i] = of_lane(all.stages[i], lane);
+    return trackers_[lane].finish(of_lane(now, lane), references, {lane_of(next.q, lane), lane_of(next.qd, lane)});
   }
 
   /// Computes the whole tick of a tracker.
   [[nodiscard]] Status alone(std::size_t lane, const TickReferences<Space, Scalar>& displacements) noexcept {
     return trackers_[lane].advance(displacements.template from<Scalar>(lane_of(start_, lane))).status;
-  }
-
-  [[nodiscard]] static Vector<N, Scalar> column(const X& x, Eigen::Index j, std::size_t lane) noexcept {
-    return lane_of(Vector<N, In>(x.col(j)), lane);
   }
 
   [[nodiscard]] static Reference<Space, Scalar> of_lane(const Reference<Space, In>& all, std::size_t lane) noexcept {
