@@ -13,11 +13,9 @@ namespace fpbm {
 /// Properties of a tick that determine whether the gains of a scheme are stable.
 template <typename Scalar = double>
 struct TickOfGains {
-  Scalar dt;             ///< Length of the tick [s].
-  Scalar integral_gain;  ///< kᵢ [1/s³], or [1/s²] at velocity level.
-  /// Whether the tick continues the previous tick: several tasks, or several levels at velocity level.
-  bool continues = false;
-  bool null_space = false;  ///< Whether the gains belong to the null space, to which TickFeedback does not apply.
+  Scalar dt;                ///< Length of the tick [s].
+  Scalar integral_gain;     ///< kᵢ [1/s³], or [1/s²] at velocity level.
+  bool null_space = false;  ///< Whether the gains belong to the null space, to which continue_tick() does not apply.
 };
 
 /// Gains of one error with their names: k₁ [1/s] and k₂ [1/s²], or k₂ alone [1/s] at velocity level.
@@ -41,13 +39,12 @@ void require_stable_gains(const NamedGains<Scalar>& gains, const TickOfGains<Sca
     if constexpr (kLevel == Level::kVelocity) {
       const Scalar x1 = factor * gains.k2 * h;
       const Scalar x3 = ki * h * h;
-      return is_stable_velocity(x1, x3) && (!tick.continues || is_stable_velocity_of_middle(x1, x3));
+      return is_stable_velocity(x1, x3) && (!tick.null_space || is_stable_velocity_of_middle(x1));
     } else {
       const Scalar x1 = factor * gains.k1 * h;
       const Scalar x2 = factor * factor * gains.k2 * h * h;
       const Scalar x3 = ki * h * h * h;
       if (!is_stable_acceleration(x1, x2, x3)) return false;
-      if (!tick.continues) return true;
       return tick.null_space ? is_stable_acceleration_of_middle(x1, x2) : is_stable_acceleration_of_levels(x1, x2, x3);
     }
   };
@@ -122,7 +119,7 @@ template <typename Scalar, typename Scheme>
 template <typename Scheme, typename Scalar>
 void require_stable(const Scheme& scheme, const TickOfGains<Scalar>& tick) {
   constexpr Level kLevel = Scheme::kLevel;
-  const TickOfGains<Scalar> of_null_space{tick.dt, Scalar(0), tick.continues, true};
+  const TickOfGains<Scalar> of_null_space{tick.dt, Scalar(0), true};
   const Scalar none(0);
   if constexpr (kWraps<Scheme>) {
     require_stable(scheme.scheme, tick);

@@ -24,14 +24,10 @@ void require_stack_gains(const Scheme& scheme, const Stack<Levels...>& stack, co
     require_none("k2", scheme.k2);
   }
   if constexpr (kHasGain<Scheme>) require_none("k", scheme.k);
-  int levels = 0;
-  for (int k = 0; k < Stack<Levels...>::kLevels; ++k) levels += stack.rows(k) > 0 ? 1 : 0;
-  const bool continues = (kLevel == Level::kAcceleration ? stack.count() : levels) > 1;
-  const TickOfGains<Scalar> of_stack{tick.dt, tick.integral_gain, continues};
   const auto require = [&](const auto& task) {
     if (rows_of(task) == 0) return;
     const Scalar k1 = kLevel == Level::kVelocity ? Scalar(0) : task.gains.k1;
-    require_stable_gains<kLevel, Scalar>({"k1", k1, kLevel == Level::kVelocity ? "k" : "k2", task.gains.k2}, of_stack);
+    require_stable_gains<kLevel, Scalar>({"k1", k1, kLevel == Level::kVelocity ? "k" : "k2", task.gains.k2}, tick);
   };
   std::apply([&](const auto&... task) { (require(task), ...); }, stack.tasks());
 }
@@ -39,7 +35,7 @@ void require_stack_gains(const Scheme& scheme, const Stack<Levels...>& stack, co
 /// require_stable() for the scheme of a stack. The integral of the tracker acts with the gains of the tasks.
 template <typename Scheme, typename Stack_, typename Scalar>
 void require_stable(const ByLevels<Scheme, Stack_>& by_levels, const TickOfGains<Scalar>& tick) {
-  require_stable(by_levels.scheme, TickOfGains<Scalar>{tick.dt, Scalar(0), tick.continues});
+  require_stable(by_levels.scheme, TickOfGains<Scalar>{tick.dt, Scalar(0)});
 }
 
 /// Tracker of a stack of tasks. more: further arguments of Tracker's constructors: limits, qdd0 and guard. Throws

@@ -87,8 +87,7 @@ class Tracker {
     DefaultDamping<Scalar> damping = options.damping(arm.dof(), first_rows(kinematics).rows());
     damping.continuous = continuous_;
     give_damping(scheme_, damping);
-    const bool continues = kLevel == Level::kAcceleration || has_lower_levels(kinematics);
-    require_stable(scheme_, TickOfGains<Scalar>{options.dt, options.integral_gain, continues});
+    require_stable(scheme_, TickOfGains<Scalar>{options.dt, options.integral_gain});
     if constexpr (kGuarded) limited_.guard().require_clear(limits, start, qdd0);
     limited_.begin_at(kinematics.tip, kinematics.length);
   }
