@@ -620,7 +620,7 @@ class Tracker:
     Moves an arm tick by tick under a scheme, within joint limits and through singular postures. If the target is
     unreachable, the arm stops.
 
-    tick integrates the tracker's own state by RK4; the result is the command for an arm with position or velocity control.
+    tick advances the tracker's own state; the result is the command for an arm with position or velocity control.
     resolve_measured computes the acceleration for a torque controller from a measured state.
     Never pass a measured state to tick. The limits hold at velocity level and at acceleration level.
 

@@ -106,7 +106,7 @@ TEST(ErrorDynamics, of_a_start_position_error_are_those_of_the_gains) {
   }
 }
 
-/// Two levels, in ticks with one acceleration (TickFeedback), up to terms of (k₁h)². The target jumps, while the lower
+/// Two levels, in ticks (TickFeedback), up to terms of (k₁h)². The target jumps, while the lower
 /// level moves the joints.
 TEST(ErrorDynamics, of_several_levels_are_those_of_the_gains) {
   const Robot<7> robot(presets::panda());

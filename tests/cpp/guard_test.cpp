@@ -93,7 +93,7 @@ template <Level kLevel>
 struct Run {
   double nearest = 1e9;  ///< Smallest distance beyond the margin [m].
   double joints = 0.0;   ///< Largest relative excess over a joint bound.
-  double within = 0.0;   ///< Largest deviation of a posture from a tick with one acceleration [rad] or [m].
+  double within = 0.0;   ///< Largest deviation of a posture from a tick of one acceleration [rad] or [m].
   int blocked = 0;
   int ticks = 0;
 };

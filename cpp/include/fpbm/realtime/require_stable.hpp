@@ -69,7 +69,7 @@ void require_stable_gains(const NamedGains<Scalar>& gains, const TickOfGains<Sca
   }
 }
 
-/// Largest stiffness kₚh² of the null space at acceleration level. RK4 is stable up to 6. But a stiff spring moves the
+/// Largest stiffness kₚh² of the null space at acceleration level. RK4 is stable up to 6, but a stiff spring moves the
 /// joints so far within a tick that its acceleration disturbs the task in the new posture. Of 18 rest postures, 0.3
 /// rad per joint from the start posture, with critical damping at 1 ms, none loses the task at 0.03, two at 0.1 and
 /// five at 0.25 (TickGains.a_stiff_rest_posture_does_not_change_the_task).

@@ -8,7 +8,7 @@
 
 namespace fpbm {
 
-/// References of an RK4 step: at the start, in the middle and at the end of a tick.
+/// References of a tick: at the start, in the middle and at the end of a tick.
 template <typename Space, typename Scalar = double>
 struct TickReferences {
   std::array<Reference<Space, Scalar>, 3> stages;

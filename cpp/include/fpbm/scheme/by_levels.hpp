@@ -22,7 +22,7 @@ namespace fpbm {
 ///   u_k = u_{k−1} + Z (J_k Z)⁺ (b_k − J_k u_{k−1}),   Z a basis of the null space of J₁ … J_{k−1},
 ///
 /// with b_k = S (xdd + k₁(xd − ẋ) + k₂(x ⊖ f(q))) − J̇_k qd for each task, or b_k = S (xd + k (x ⊖ f(q))) at velocity
-/// level, all rows in metres. In a tick with one acceleration, TickFeedback defines b_k and J_k. Directions of a level
+/// level, all rows in metres. In a tick, continue_tick() defines b_k and J_k. Directions of a level
 /// that are lost because of the posture or of higher levels are damped (DampedLevel). The null-space motion of `scheme`
 /// determines the motion that no task determines: while directions of a lower level are damped, the posture-dependent
 /// part of z is projected on the null space of all levels (docs/singularities.md, Secondary motion).

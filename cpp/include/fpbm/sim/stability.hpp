@@ -62,8 +62,8 @@ template <typename Scalar>
   return is_in_unit_circle(-rk4(Scalar(1), Scalar(0)), -rk4(Scalar(0), Scalar(1)), Scalar(0));
 }
 
-/// Whether a tick with one acceleration damps the errors of a task, with TickFeedback (docs/equations.md, A tick with
-/// one acceleration). The integral is a part of xdd.
+/// Whether a tick damps the errors of a task, with TickFeedback (docs/equations.md, A tick). The integral is a part of
+/// xdd.
 template <typename Scalar>
 [[nodiscard]] bool is_stable_acceleration_of_levels(Scalar x1, Scalar x2, Scalar x3 = Scalar(0)) noexcept {
   const TickFeedback<Scalar> feedback(x1, x2, Scalar(1));

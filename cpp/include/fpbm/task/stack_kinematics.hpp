@@ -75,7 +75,7 @@ struct StackKinematics {
   std::array<bool, Stack_::kLevels> enabled;  ///< Whether each level is resolved. The first level is always resolved.
   Scalar length = Scalar(1);                  ///< Characteristic length of the robot [m].
 
-  /// Set by continue_tick(), in the middle of a tick with one acceleration: 2 (e' − e)/h, twice the change of the
+  /// Set by continue_tick(), in the middle of a tick: 2 (e' − e)/h, twice the change of the
   /// errors since the start of the tick, divided by the length h of the tick [m/s, rad/s].
   Vector<Stack_::Space::kRows, Scalar> error_rate;
   Scalar tick = Scalar(0);  ///< h [s], or 0 without continue_tick().

@@ -6,13 +6,13 @@
 
 namespace fpbm {
 
-/// Feedback of a task. In a tick of length h with one acceleration, the commanded task acceleration is
+/// Feedback of a task. In a tick of length h, the commanded task acceleration is
 ///
 ///   ẍ = s ẍ' + (1 − s) xdd + (k₁' 2(e' − e)/h + k₂'e')/(1 + g),   g = k₁'h/2 + k₂'h²/4,   s = g/(2 + 2g).
 ///
 /// e is the error x ⊖ f(q) at the start of the tick. e' and ẍ' are the error and the task acceleration in the middle of
 /// a tick that continues the acceleration of the previous tick. The law is the implicit midpoint rule for
-/// ë + k₁'ė + k₂'e = 0 (docs/equations.md, A tick with one acceleration): a tick multiplies an error by
+/// ë + k₁'ė + k₂'e = 0 (docs/equations.md, A tick): a tick multiplies an error by
 /// (2 + λ'h)/(2 − λ'h), where λ'² + k₁'λ' + k₂' = 0. The gains
 ///
 ///   k₁' = k₁ − (k₁² − 3k₂)k₁h²/12,   k₂' = k₂ − (k₁² − 2k₂)k₂h²/12
