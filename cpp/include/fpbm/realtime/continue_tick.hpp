@@ -77,8 +77,8 @@ void continue_tick(Kinematics<Space, N, Scalar>& kinematics, Reference<Space, Sc
 
 /// For a stack: each task has its gains.
 template <typename... Levels, int N, typename Scalar>
-void continue_tick(Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics,
-                   const Reference<StackSpace<Levels...>, Scalar>&, const TaskGains<Scalar>&, const Scalar& h,
+void continue_tick(Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics, Reference<StackSpace<Levels...>, Scalar>&,
+                   const TaskGains<Scalar>&, const Scalar& h,
                    const Vector<StackSpace<Levels...>::kRows, Scalar>& change,
                    const TickBefore<N, Scalar>& before) noexcept {
   kinematics.continue_tick(h, change, before);
