@@ -84,7 +84,7 @@ class StackMotion final : public Motion {
         parts_(parts_of(settings.tasks)),
         tasks_(Robot(settings.tree), stack_of(settings.tasks)),
         filters_(settings.tasks.back().target + 1, Filter(fpbm::Transform<>{}, settings.bounds, settings.filter)) {
-    const fpbm::TickOfGains<> tick{options_.dt, 0.0, settings.tasks.size() > 1};
+    const fpbm::TickOfGains<> tick{options_.dt, 0.0};
     require_stable_tasks(settings.tasks, tick);
     fpbm::require_stable(scheme_from(Joints::Zero(tasks_.dof())), tick);
   }
