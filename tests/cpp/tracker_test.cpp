@@ -110,8 +110,8 @@ TEST(Tracker, is_noexcept) {
   look(nullptr, nullptr, Reference<Pose>::hold({}), bent());
 }
 
-/// Far from every limit, a tick is bitwise a step of RK4.
-TEST(Tracker, has_the_steps_of_a_rollout) {
+/// Far from every limit, a tick differs from a step of RK4 by terms of h³.
+TEST(Tracker, follows_the_motion_of_a_rollout) {
   const auto path = turning_circle();
   std::vector<Vector<7>> q;
   const State<7> start{bent(), Vector<7>::Zero()};
@@ -126,8 +126,8 @@ TEST(Tracker, has_the_steps_of_a_rollout) {
     ASSERT_EQ(tick.status, Status::kOk);
     ASSERT_EQ(tick.scale, 1.0);
     ASSERT_EQ(tick.saturated, 0U);
-    ASSERT_LE((tick.q - q[static_cast<std::size_t>(i) + 1]).cwiseAbs().maxCoeff(), 1e-13) << i;
-    ASSERT_LE(tick.error.norm(), 1e-11);
+    ASSERT_LE((tick.q - q[static_cast<std::size_t>(i) + 1]).cwiseAbs().maxCoeff(), 1e-7) << i;
+    ASSERT_LE(tick.error.norm(), 1e-8);
   }
   EXPECT_EQ(follower.time(), 4.0);  // Exact for any number of ticks.
 }

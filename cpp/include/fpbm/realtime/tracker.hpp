@@ -134,7 +134,9 @@ class Tracker {
     }
     const auto rows = limited_.rows();
     JointState next = state;
-    resolve(loop, limited_.tick().update_middle(loop, references, gains_of<Scalar>(scheme_)), result);
+    const TaskGains<Scalar> gains = gains_of<Scalar>(scheme_);
+    resolve(loop, limited_.tick().update_middle(loop, references, gains), result);
+    limited_.tick().add_lead(loop.kinematics, gains);
     if (!failed(result.status)) next = limited_.tick().after(loop.motion());
     if (lower_levels_.rests() && !failed(result.status)) next = limited_.tick().slowed();
     limited_.finish_tick(loop, now, rows, next, result);
@@ -161,7 +163,9 @@ class Tracker {
     const auto rows = limited_.rows();
     if (!limited_.is_free(rows, next)) {
       points(state().q, loop.kinematics);
-      (void)limited_.tick().update_middle(loop, references, gains_of<Scalar>(scheme_));
+      const TaskGains<Scalar> gains = gains_of<Scalar>(scheme_);
+      (void)limited_.tick().update_middle(loop, references, gains);
+      limited_.tick().add_lead(loop.kinematics, gains);
     }
     limited_.finish_tick(loop, now, rows, next, result);
     return result.status;

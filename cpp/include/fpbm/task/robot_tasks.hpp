@@ -83,9 +83,4 @@ class RobotTasks {
   Stack_ stack_;
 };
 
-template <typename Robot, typename Stack_>
-[[nodiscard]] bool has_several_tasks(const RobotTasks<Robot, Stack_>& arm) noexcept {
-  return arm.stack().count() > 1;
-}
-
 }  // namespace fpbm
