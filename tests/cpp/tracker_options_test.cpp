@@ -239,12 +239,12 @@ TEST(TickGains, beyond_the_stability_bound_of_a_tick_are_rejected) {
   const Joints ones = Joints::Ones(7);
   constexpr double kRealAxis = 2.785293563;  // RK4's 1 + z + z²/2 + z³/6 + z⁴/24 is 1 again.
   for (const double dt : {1e-3, 4e-3, 0.02}) {
-    expect_a_limit("null_damping", kRealAxis / dt, [&](double value) { return refusal(fpbm(7, damped(value)), dt); });
-    expect_a_limit("null_damping", kRealAxis / dt, [&](double value) { return refusal(fpbm(7), dt, 0.0, value); });
+    expect_a_limit("null_damping", 1.0 / dt, [&](double value) { return refusal(fpbm(7, damped(value)), dt); });
+    expect_a_limit("null_damping", 1.0 / dt, [&](double value) { return refusal(fpbm(7), dt, 0.0, value); });
     expect_a_limit("null_stiffness", 0.1 / dt / dt,
                    [&](double value) { return refusal(fpbm(7, damped(1.0 / dt).with_rest_posture(ones, value)), dt); });
     expect_a_limit("k", kRealAxis / dt, [&](double value) { return refusal(WMVN<kOpen>(ones, value), dt); });
-    expect_a_limit("null_stiffness", kRealAxis / dt, [&](double value) {
+    expect_a_limit("null_stiffness", 1.0 / dt, [&](double value) {
       return refusal(WMVN<kOpen>(ones, 5.0, NullSpace<kOpen>().with_rest_posture(ones, value)), dt);
     });
     expect_a_limit("k1", kRealAxis / dt, [&](double value) { return refusal(FPBM<kOpen>(0.6, ones, value, 0.0), dt); });

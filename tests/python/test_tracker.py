@@ -201,7 +201,7 @@ def test_self_motion_comes_to_rest(panda, make):
 @pytest.mark.parametrize(
     ("scheme", "options", "words"),
     [
-        (fp.FPBM(0.6, np.ones(7), 10, 25, null_damping=3000), {}, "null_damping = 3000: must be at most 2785"),
+        (fp.FPBM(0.6, np.ones(7), 10, 25, null_damping=3000), {}, "null_damping = 3000: must be at most 999"),
         (
             fp.FPBM(0.6, np.ones(7), 10, 25),
             {"null_damping": 200, "dt": 0.02},
