@@ -356,16 +356,14 @@ def test_gains_are_checked(panda, balanced):
 @pytest.mark.parametrize("level", ["velocity", "acceleration"])
 def test_the_largest_gains_that_are_accepted_damp_errors(panda, level):
     """With the largest gain on its level, the tip stays at rest while a lower level meets its limits."""
-    largest = (1.0 if level == "velocity" else 2.785) / DT
+    largest = 2.785 / DT
     scheme = fp.WMVN(np.ones(7)) if level == "velocity" else fp.Balanced(0.6, np.ones(7), null_damping=2)
     last = []
     for gain in (0.95 * largest, 1.05 * largest):
         tip = fp.PositionTask(k1=gain, k2=0, k=gain)
         stack = fp.Stack(tip, fp.PostureTask(k1=100, k2=0, k=100))
         if gain > largest:
-            with pytest.raises(
-                fp.ParameterError, match=r"k1? = (1050: must be at most 999|2924.25: must be at most 2785)"
-            ):
+            with pytest.raises(fp.ParameterError, match=r"k1? = 2924.25: must be at most 2785"):
                 fp.Tracker(panda, scheme, READY, stack=stack)
             continue
         tracker = fp.Tracker(panda, scheme, READY, stack=stack)
