@@ -110,7 +110,8 @@ TEST(Tracker, is_noexcept) {
   look(nullptr, nullptr, Reference<Pose>::hold({}), bent());
 }
 
-/// Far from every limit, a tick differs from a step of RK4 by terms of h³.
+/// Far from every limit, the tip follows the motion of a rollout. The null space of a tick is that of J + h'J̇, so that
+/// the joints differ by terms of h.
 TEST(Tracker, follows_the_motion_of_a_rollout) {
   const auto path = turning_circle();
   std::vector<Vector<7>> q;
@@ -126,7 +127,7 @@ TEST(Tracker, follows_the_motion_of_a_rollout) {
     ASSERT_EQ(tick.status, Status::kOk);
     ASSERT_EQ(tick.scale, 1.0);
     ASSERT_EQ(tick.saturated, 0U);
-    ASSERT_LE((tick.q - q[static_cast<std::size_t>(i) + 1]).cwiseAbs().maxCoeff(), 1e-7) << i;
+    ASSERT_LE((tick.q - q[static_cast<std::size_t>(i) + 1]).cwiseAbs().maxCoeff(), 1e-5) << i;
     ASSERT_LE(tick.error.norm(), 1e-8);
   }
   EXPECT_EQ(follower.time(), 4.0);  // Exact for any number of ticks.

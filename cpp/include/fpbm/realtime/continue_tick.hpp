@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <tuple>
 
-#include "fpbm/core/level.hpp"
 #include "fpbm/core/mask.hpp"
 #include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/linalg/product.hpp"
@@ -17,6 +16,14 @@
 
 namespace fpbm {
 
+/// J ← J + lead J̇.
+template <int M, int N, typename Scalar>
+void add_lead(Matrix<M, N, Scalar>& J, const Scalar& lead, const Matrix<M, N, Scalar>& Jd) noexcept {
+  for (Eigen::Index j = 0; j < J.cols(); ++j) {
+    for (Eigen::Index i = 0; i < J.rows(); ++i) J.coeffRef(i, j) += lead * Jd.coeff(i, j);
+  }
+}
+
 /// (1 − e^(−kh))/h: the mean decay in a tick of an error that decays with the gain k.
 template <typename Scalar>
 [[nodiscard]] Scalar mean_decay(const Scalar& k, const Scalar& h) noexcept {
@@ -28,15 +35,14 @@ template <typename Scalar>
   }
 }
 
-/// Prepares the middle of a tick that continues the acceleration of the previous tick (docs/equations.md, A tick). The
-/// acceleration of the reference changes, so that the law of a scheme with the gains k₁ and k₂,
+/// Prepares the middle of a tick that continues the acceleration of the previous tick (docs/equations.md, A tick with
+/// one acceleration): J ← J + h'J̇, and the acceleration of the reference changes, so that the law of a scheme with the
+/// gains k₁ and k₂,
 ///
 ///   J qdd = xdd − J̇ qd + k₁ (xd − J qd) + k₂ (x ⊖ f(q)),
 ///
-/// becomes the law of TickFeedback for the rows J + h'J̇. The term h'J̇ qdd has the acceleration a' + δ' that the last
-/// two ticks predict, so that the null space is that of J. kinematics: in the middle. reference: in the middle. h:
-/// length of the tick [s]. change: e' − e, the change of the error since the start of the tick. before.qd: in the
-/// middle.
+/// becomes the law of TickFeedback. kinematics: in the middle. reference: in the middle. h: length of the tick [s].
+/// change: e' − e, the change of the error since the start of the tick. before.qd: in the middle.
 template <typename Space, int N, typename Scalar>
 void continue_tick(Kinematics<Space, N, Scalar>& kinematics, Reference<Space, Scalar>& reference,
                    const TaskGains<Scalar>& gains, const Scalar& h, const Vector<Space::kRows, Scalar>& change,
@@ -48,8 +54,8 @@ void continue_tick(Kinematics<Space, N, Scalar>& kinematics, Reference<Space, Sc
     return feedback.previous_weight * before.qdd.coeff(i) + gains.k1 * before.qd.coeff(i);
   });
   const Vector<N, Scalar> of_rates = entrywise(before.qd, [&](Eigen::Index i) {
-    return feedback.previous_weight * before.qd.coeff(i) -
-           (feedback.lead + feedback.correction) * before.change.coeff(i);
+    return (feedback.previous_weight + gains.k1 * feedback.lead) * before.qd.coeff(i) +
+           feedback.lead * before.qdd.coeff(i) - feedback.correction * before.change.coeff(i);
   });
   const Twist rows = product(kinematics.J, of_rows);
   const Twist rates = product(kinematics.Jd, of_rates);
@@ -66,6 +72,7 @@ void continue_tick(Kinematics<Space, N, Scalar>& kinematics, Reference<Space, Sc
            feedback.velocity_gain * error_rate.coeff(i) - gains.k1 * reference.xd.coeff(i) +
            (feedback.position_gain - gains.k2) * error.coeff(i) + rows.coeff(i) + rates.coeff(i);
   });
+  add_lead(kinematics.J, feedback.lead, kinematics.Jd);
 }
 
 /// For a stack: each task has its gains.
@@ -77,51 +84,33 @@ void continue_tick(Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics, Ref
   kinematics.continue_tick(h, change, before);
 }
 
-/// Prepares the middle of a tick at velocity level that continues the velocity u' of the previous tick. The velocity of
-/// the reference changes, so that the law of a scheme with the gain k, J u = xd + k (x ⊖ f(q)), becomes
+/// Prepares the middle of a tick at velocity level that continues the velocity u' of the previous tick: J ← J + hJ̇/2,
+/// and the velocity of the reference changes, so that the law of a scheme with the gain k, J u = xd + k (x ⊖ f(q)),
+/// becomes
 ///
 ///   (J + hJ̇/2) u = xd + (1 − e^(−kh))/h e + J u' + hJ̇u'/4 − 2(x' − x₀)/h.
 ///
-/// The error then decays by e^(−kh) in each tick (docs/equations.md, A tick). The term hJ̇u/2 has the velocity
-/// u' + h q̈' that the last two ticks predict. start_error: e, at the start of the tick. moved: x' − x₀, displacement of
-/// the tip to the middle. before.qd: u'. before.qdd: q̈'. In float, 2(x' − x₀)/h is mostly round-off error. Therefore,
-/// J u' − hJ̇u'/2 is used instead.
+/// The error then decays by e^(−kh) in each tick, up to terms of h⁴ (docs/equations.md, A tick at velocity level).
+/// error: e at the start of the tick. moved: x' − x₀, displacement of the tip to the middle. In float, 2(x' − x₀)/h is
+/// mostly round-off error. Therefore, J u' − hJ̇u'/4 is used instead.
 template <typename Space, int N, typename Scalar>
 void continue_tick_of_velocity(Kinematics<Space, N, Scalar>& kinematics, Reference<Space, Scalar>& reference,
                                const TaskGains<Scalar>& gains, const Scalar& h,
                                const Vector<Space::kRows, Scalar>& start_error,
-                               const Vector<Space::kRows, Scalar>& moved,
-                               const TickBefore<N, Scalar>& before) noexcept {
+                               const Vector<Space::kRows, Scalar>& moved, const Vector<N, Scalar>& u) noexcept {
   using Twist = Vector<Space::kRows, Scalar>;
   constexpr bool kByPositions = TickFeedback<Scalar>::kByPositions;
   const Scalar rate = mean_decay(gains.k2, h);
   const Twist error = Space::template difference<Scalar>(reference.x, kinematics.tip);
-  const Vector<N, Scalar> of_rates = entrywise(before.qd, [&](Eigen::Index i) {
-    return (kByPositions ? h / Scalar(-4) : Scalar(0)) * before.qd.coeff(i) - h * h / Scalar(2) * before.qdd.coeff(i);
-  });
-  const Twist rates = product(kinematics.Jd, of_rates);
-  const Twist rows = product(kinematics.J, before.qd);
+  const Twist rates = product(kinematics.Jd, u);
+  const Twist rows = product(kinematics.J, u);
   reference.xd = entrywise(error, [&](Eigen::Index i) {
-    const Scalar deviation = kByPositions ? rows.coeff(i) - Scalar(2) / h * moved.coeff(i) : Scalar(0);
-    return reference.xd.coeff(i) + rate * start_error.coeff(i) + deviation + rates.coeff(i) - gains.k2 * error.coeff(i);
+    const Scalar offset = kByPositions ? rows.coeff(i) + h / Scalar(4) * rates.coeff(i) - Scalar(2) / h * moved.coeff(i)
+                                       : h / Scalar(2) * rates.coeff(i);
+    return reference.xd.coeff(i) + rate * start_error.coeff(i) + offset - gains.k2 * error.coeff(i);
   });
+  add_lead(kinematics.J, h / Scalar(2), kinematics.Jd);
 }
-
-/// J ← J + h'J̇, the rows with which limits keep the task: of the whole tick.
-template <Level kLevel, typename Space, int N, typename Scalar>
-void add_lead(Kinematics<Space, N, Scalar>& kinematics, const TaskGains<Scalar>& gains, const Scalar& h) noexcept {
-  const Scalar lead =
-      kLevel == Level::kAcceleration ? TickFeedback<Scalar>(gains.k1, gains.k2, h).lead : Scalar(h / Scalar(2));
-  for (Eigen::Index j = 0; j < kinematics.J.cols(); ++j) {
-    for (Eigen::Index i = 0; i < kinematics.J.rows(); ++i) {
-      kinematics.J.coeffRef(i, j) += lead * kinematics.Jd.coeff(i, j);
-    }
-  }
-}
-
-/// For a stack: continue_tick() adds the lead, so that lower levels do not disturb higher levels.
-template <Level kLevel, typename... Levels, int N, typename Scalar>
-void add_lead(Kinematics<StackSpace<Levels...>, N, Scalar>&, const TaskGains<Scalar>&, const Scalar&) noexcept {}
 
 /// For a stack: each task has its gain.
 template <typename... Levels, int N, typename Scalar>
@@ -129,7 +118,7 @@ void continue_tick_of_velocity(Kinematics<StackSpace<Levels...>, N, Scalar>& kin
                                Reference<StackSpace<Levels...>, Scalar>& reference, const TaskGains<Scalar>&,
                                const Scalar& h, const Vector<StackSpace<Levels...>::kRows, Scalar>& start_error,
                                const Vector<StackSpace<Levels...>::kRows, Scalar>& moved,
-                               const TickBefore<N, Scalar>& before) noexcept {
+                               const Vector<N, Scalar>& u) noexcept {
   StackSpace<Levels...>::each([&](auto space, auto i, int row) noexcept {
     using Part = decltype(space);
     auto& gain = std::get<decltype(i)::value>(kinematics.tasks).feedback.position_gain;
@@ -141,7 +130,7 @@ void continue_tick_of_velocity(Kinematics<StackSpace<Levels...>, N, Scalar>& kin
     }
   });
   kinematics.tick = h;
-  std::apply([&](auto&... level) { (level.continue_velocity(h, before.qd), ...); }, kinematics.levels);
+  std::apply([&](auto&... level) { (level.continue_velocity(h, u), ...); }, kinematics.levels);
 }
 
 }  // namespace fpbm

@@ -64,16 +64,9 @@ struct TickState {
                     TickBefore<N, Scalar>{loop.state.qd, last, change});
     } else {
       const auto error = Space::template difference<Scalar>(references.stages[0].x, start);
-      continue_tick_of_velocity(loop.kinematics, middle, gains, motion.dt, error, moved,
-                                TickBefore<N, Scalar>{loop.state.qd, last, change});
+      continue_tick_of_velocity(loop.kinematics, middle, gains, motion.dt, error, moved, loop.state.qd);
     }
     return middle;
-  }
-
-  /// Rows of the whole tick, for the limits. Call after the scheme has resolved the reference of update_middle().
-  template <typename Kinematics>
-  void add_lead(Kinematics& kinematics, const TaskGains<Scalar>& gains) const noexcept {
-    fpbm::add_lead<kLevel>(kinematics, gains, motion.dt);
   }
 };
 

@@ -134,9 +134,7 @@ class Tracker {
     }
     const auto rows = limited_.rows();
     JointState next = state;
-    const TaskGains<Scalar> gains = gains_of<Scalar>(scheme_);
-    resolve(loop, limited_.tick().update_middle(loop, references, gains), result);
-    limited_.tick().add_lead(loop.kinematics, gains);
+    resolve(loop, limited_.tick().update_middle(loop, references, gains_of<Scalar>(scheme_)), result);
     if (!failed(result.status)) next = limited_.tick().after(loop.motion());
     if (lower_levels_.rests() && !failed(result.status)) next = limited_.tick().slowed();
     limited_.finish_tick(loop, now, rows, next, result);
@@ -163,9 +161,7 @@ class Tracker {
     const auto rows = limited_.rows();
     if (!limited_.is_free(rows, next)) {
       points(state().q, loop.kinematics);
-      const TaskGains<Scalar> gains = gains_of<Scalar>(scheme_);
-      (void)limited_.tick().update_middle(loop, references, gains);
-      limited_.tick().add_lead(loop.kinematics, gains);
+      (void)limited_.tick().update_middle(loop, references, gains_of<Scalar>(scheme_));
     }
     limited_.finish_tick(loop, now, rows, next, result);
     return result.status;
