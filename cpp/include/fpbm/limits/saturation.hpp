@@ -22,7 +22,9 @@ namespace fpbm {
 ///
 /// where `rest` is a braking motion within the box. The algorithm starts from u = rest and s = 0, and raises s. If a
 /// joint meets its bound, the joint is held on the bound, and other joints compensate by the null-space motion of least
-/// norm in the units of the joints. If no null-space motion can compensate, a joint whose bound blocks the task is
+/// norm in the units of the joints. If the bounds do not admit the null-space part p = Z Zᵀ(desired − rest) from `rest`,
+/// p is first reduced along its line. Otherwise, joints that cannot stop within a tick would be on their bounds at once,
+/// and the other joints would accelerate to compensate. If no null-space motion can compensate, a joint whose bound blocks the task is
 /// released, as in the simplex method. If no joint can be released, s is the optimum of a linear program. Each bound
 /// that is met costs one pass. There are at most 3n passes (random problems need up to 1.7n). After every pass, u is in
 /// the box and on the line of the task.
@@ -94,6 +96,7 @@ class NullSpaceSaturation {
         lower(joints + k) = -std::numeric_limits<Scalar>::infinity();
       }
     }
+    reduce_null_space_part(goal, lower, upper, joints);
     All u(n);
     for (Eigen::Index i = 0; i < n; ++i) u.coeffRef(i) = Scalar(0);
     SaturatedMotion<N, Scalar> result{rest, Scalar(0), 0, 0};
@@ -202,6 +205,26 @@ class NullSpaceSaturation {
         }
       }
     }
+  }
+
+  /// Subtracts from the goal the part of p that the bounds do not admit.
+  void reduce_null_space_part(All& goal, const All& lower, const All& upper, Eigen::Index joints) const noexcept {
+    using std::abs;
+    All p(goal.size());
+    for (Eigen::Index i = 0; i < p.size(); ++i) p.coeffRef(i) = Scalar(0);
+    for (Eigen::Index j = 0; j < Z_.cols(); ++j) {
+      Scalar along(0);
+      for (Eigen::Index i = 0; i < joints; ++i) along += Z_.coeff(i, j) * goal.coeff(i);
+      for (Eigen::Index i = 0; i < p.size(); ++i) p.coeffRef(i) += along * Z_.coeff(i, j);
+    }
+    const Scalar still = kStill * largest_magnitude(goal);
+    Scalar admitted(1);
+    for (Eigen::Index i = 0; i < p.size(); ++i) {
+      if (!(abs(p.coeff(i)) > still)) continue;
+      const Scalar most = (p.coeff(i) > Scalar(0) ? upper.coeff(i) : lower.coeff(i)) / p.coeff(i);
+      if (most < admitted) admitted = most > Scalar(0) ? most : Scalar(0);
+    }
+    for (Eigen::Index i = 0; i < p.size(); ++i) goal.coeffRef(i) -= (Scalar(1) - admitted) * p.coeff(i);
   }
 
   static void count(SaturatedMotion<N, Scalar>& result, Eigen::Index held, Eigen::Index joints) noexcept {

@@ -4,11 +4,13 @@
 #include <array>
 #include <cstddef>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "fpbm/core/types.hpp"
 #include "fpbm/limits/one_level.hpp"
 #include "fpbm/limits/saturated_motion.hpp"
+#include "fpbm/linalg/diagonal_level.hpp"
 
 namespace fpbm {
 
@@ -35,6 +37,18 @@ class TaskLevels {
   void disable_lower() noexcept {
     enabled_.fill(false);
     first_motion_ = nullptr;
+  }
+
+  /// Adds lead J̇ to rows first … first + count − 1 of J_k. A posture (DiagonalLevel) has J̇ = 0.
+  template <std::size_t k, typename Rates>
+  void add_lead([[maybe_unused]] Eigen::Index first, [[maybe_unused]] Eigen::Index count, [[maybe_unused]] Scalar lead,
+                [[maybe_unused]] const Rates& rates) noexcept {
+    auto& J = std::get<k>(J_);
+    if constexpr (!std::is_same_v<std::decay_t<decltype(J)>, DiagonalLevel<N, Scalar>>) {
+      for (Eigen::Index j = 0; j < J.cols(); ++j) {
+        for (Eigen::Index i = first; i < first + count; ++i) J.coeffRef(i, j) += lead * rates.Jd.coeff(i, j);
+      }
+    }
   }
 
   /// Calls f(k, J_k) for the enabled levels k = 1 … K − 1 below the first level.

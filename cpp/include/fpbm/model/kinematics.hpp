@@ -17,6 +17,7 @@ struct Kinematics {
   /// Characteristic length of the arm [m], which converts radians to metres. Thresholds then do not depend on the size
   /// of the arm.
   Scalar length = Scalar(1);
+  Scalar lead = Scalar(0);  ///< h' [s] if J is J + h'J̇, the rows of continue_tick().
 };
 
 /// Number of rows of J as template argument of the limits. If N is Eigen::Dynamic, this number is Eigen::Dynamic too,
@@ -66,6 +67,14 @@ void points_of(const Arm& arm, const Vector& q, Kinematics& kinematics, long) no
   arm.kinematics(q, kinematics);
 }
 
+/// J ← J + lead J̇.
+template <typename Rows, typename Scalar, typename Rates>
+void add_lead(Rows& J, const Scalar& lead, const Rates& Jd) noexcept {
+  for (Eigen::Index j = 0; j < J.cols(); ++j) {
+    for (Eigen::Index i = 0; i < J.rows(); ++i) J.coeffRef(i, j) += lead * Jd.coeff(i, j);
+  }
+}
+
 /// x ⊖ f(q), the error of the task [m, rad] for the target x.
 template <typename Space, int N, typename Scalar>
 [[nodiscard]] Vector<Space::kRows, Scalar> task_error(const Kinematics<Space, N, Scalar>& kinematics,
@@ -73,11 +82,15 @@ template <typename Space, int N, typename Scalar>
   return Space::template difference<Scalar>(x, kinematics.tip);
 }
 
-/// J with all rows in metres: the angular rows are multiplied by the characteristic length.
+/// J at the state of the kinematics with all rows in metres: the angular rows are multiplied by the characteristic
+/// length. The rows have no lead: null-space motion must not change the rows of the bounds on the tip, which are
+/// evaluated at this state too. With a lead, the saturation would use the difference of 1e-3 between the rows for
+/// null-space motion at the bounds of the joints (TaskBounds.stop_gently_before_a_wall).
 template <typename Space, int N, typename Scalar>
 [[nodiscard]] Matrix<kLimitedRows<Space, N>, N, Scalar> jacobian_in_metres(
     const Kinematics<Space, N, Scalar>& kinematics) noexcept {
   Matrix<kLimitedRows<Space, N>, N, Scalar> J = kinematics.J;
+  if (kinematics.lead > Scalar(0)) add_lead(J, -kinematics.lead, kinematics.Jd);
   for (Eigen::Index j = 0; Space::kTurns > 0 && j < J.cols(); ++j) {
     for (int i = Space::kRows - Space::kTurns; i < Space::kRows; ++i) J.coeffRef(i, j) *= kinematics.length;
   }

@@ -16,14 +16,6 @@
 
 namespace fpbm {
 
-/// J ← J + lead J̇.
-template <int M, int N, typename Scalar>
-void add_lead(Matrix<M, N, Scalar>& J, const Scalar& lead, const Matrix<M, N, Scalar>& Jd) noexcept {
-  for (Eigen::Index j = 0; j < J.cols(); ++j) {
-    for (Eigen::Index i = 0; i < J.rows(); ++i) J.coeffRef(i, j) += lead * Jd.coeff(i, j);
-  }
-}
-
 /// (1 − e^(−kh))/h: the mean decay in a tick of an error that decays with the gain k.
 template <typename Scalar>
 [[nodiscard]] Scalar mean_decay(const Scalar& k, const Scalar& h) noexcept {
@@ -72,7 +64,8 @@ void continue_tick(Kinematics<Space, N, Scalar>& kinematics, Reference<Space, Sc
            feedback.velocity_gain * error_rate.coeff(i) - gains.k1 * reference.xd.coeff(i) +
            (feedback.position_gain - gains.k2) * error.coeff(i) + rows.coeff(i) + rates.coeff(i);
   });
-  add_lead(kinematics.J, feedback.lead, kinematics.Jd);
+  kinematics.lead = feedback.lead;
+  add_lead(kinematics.J, kinematics.lead, kinematics.Jd);
 }
 
 /// For a stack: each task has its gains.
@@ -109,7 +102,8 @@ void continue_tick_of_velocity(Kinematics<Space, N, Scalar>& kinematics, Referen
                                        : h / Scalar(2) * rates.coeff(i);
     return reference.xd.coeff(i) + rate * start_error.coeff(i) + offset - gains.k2 * error.coeff(i);
   });
-  add_lead(kinematics.J, h / Scalar(2), kinematics.Jd);
+  kinematics.lead = h / Scalar(2);
+  add_lead(kinematics.J, kinematics.lead, kinematics.Jd);
 }
 
 /// For a stack: each task has its gain.
@@ -121,9 +115,10 @@ void continue_tick_of_velocity(Kinematics<StackSpace<Levels...>, N, Scalar>& kin
                                const Vector<N, Scalar>& u) noexcept {
   StackSpace<Levels...>::each([&](auto space, auto i, int row) noexcept {
     using Part = decltype(space);
-    auto& gain = std::get<decltype(i)::value>(kinematics.tasks).feedback.position_gain;
-    const Scalar rate = mean_decay(gain, h);
-    gain = Scalar(0);
+    auto& feedback = std::get<decltype(i)::value>(kinematics.tasks).feedback;
+    const Scalar rate = mean_decay(feedback.position_gain, h);
+    feedback.position_gain = Scalar(0);
+    feedback.lead = h / Scalar(2);
     for (int j = row; j < row + Part::kRows; ++j) {
       reference.xd.coeffRef(j) += rate * start_error.coeff(j);
       if (TickFeedback<Scalar>::kByPositions) reference.xd.coeffRef(j) -= Scalar(2) / h * moved.coeff(j);

@@ -76,14 +76,21 @@ template <typename... Levels, int N, typename Scalar>
   return scale;
 }
 
-/// Jacobians of the levels, for the limits.
+/// Jacobians of the levels at the state of the kinematics, for the limits. See jacobian_in_metres() of one task.
 template <typename... Levels, int N, typename Scalar>
 [[nodiscard]] auto jacobian_in_metres(const Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics) noexcept {
-  return std::apply(
+  auto levels = std::apply(
       [&](const auto&... rows) {
         return TaskLevels<N, Scalar, std::decay_t<decltype(rows.matrix())>...>(kinematics.enabled, rows.matrix()...);
       },
       kinematics.levels);
+  if (kinematics.tick > Scalar(0)) {
+    kinematics.each_task([&](auto level, const auto& task, Eigen::Index row) noexcept {
+      constexpr std::size_t kLevel = decltype(level)::value;
+      levels.template add_lead<kLevel>(row, task.S.rows(), -task.feedback.lead, std::get<kLevel>(kinematics.levels));
+    });
+  }
+  return levels;
 }
 
 /// Reference of a stack, from a source for each task in the order of the stack.

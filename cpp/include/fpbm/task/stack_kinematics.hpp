@@ -86,15 +86,29 @@ struct StackKinematics {
                      const TickBefore<N, Scalar>& before) noexcept {
     tick = h;
     error_rate = entrywise(change, [&](Eigen::Index i) { return Scalar(2) / h * change.coeff(i); });
-    int row = 0;  // First row of the task in its level.
+    each_task(*this, [&](auto level, auto& task, int row) noexcept {
+      task.feedback = {task.feedback.velocity_gain, task.feedback.position_gain, h};
+      std::get<decltype(level)::value>(levels).continue_tick(task.feedback, row, task.S.rows(), before);
+    });
+  }
+
+  /// Calls f(k, task, row) for each task: k, an integral constant, is the level of the task, and `row` the first row of
+  /// the task in this level.
+  template <typename F>
+  void each_task(F&& f) const noexcept {
+    each_task(*this, f);
+  }
+
+ private:
+  template <typename Self, typename F>
+  static void each_task(Self& self, F&& f) noexcept {
+    int row = 0;
     Stack_::Space::each([&](auto, auto i, int) noexcept {
       constexpr int kIndex = decltype(i)::value;
       if (kIndex > 0 && Stack_::level(kIndex) != Stack_::level(kIndex - 1)) row = 0;
-      auto& [feedback, S, xd] = std::get<kIndex>(tasks);
-      feedback = {feedback.velocity_gain, feedback.position_gain, h};
-      auto& level = std::get<static_cast<std::size_t>(Stack_::level(kIndex))>(levels);
-      level.continue_tick(feedback, row, S.rows(), before);
-      row += static_cast<int>(S.rows());
+      auto& task = std::get<kIndex>(self.tasks);
+      f(std::integral_constant<std::size_t, static_cast<std::size_t>(Stack_::level(kIndex))>{}, task, row);
+      row += static_cast<int>(task.S.rows());
     });
   }
 };
