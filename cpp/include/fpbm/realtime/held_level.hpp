@@ -61,6 +61,8 @@ class HeldLevel {
 
 /// Replaces HeldLevel in a tracker of a single level.
 struct NoHeldLevel {
+  template <typename References, typename Point, typename Scalar>
+  static void hold(const References&, const Point&, const Scalar&) noexcept {}
   static void release() noexcept {}
 };
 

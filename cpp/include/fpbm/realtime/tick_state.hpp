@@ -25,14 +25,14 @@ struct TickState {
 
   /// State after a tick with the constant motion u.
   [[nodiscard]] JointState after(const JointVector& u) const noexcept { return motion.after(joints, u); }
-  /// State after a tick in which all velocities decrease in proportion, to 1/e in 0.025 s or two ticks. With 0.1 s, a
+  /// Motion of a tick in which all velocities decrease in proportion, to 1/e in 0.025 s or two ticks. With 0.1 s, a
   /// stopped task of LowerLevels.stay_where_they_stopped_at_acceleration_level moves by 2e-4 in this time.
-  [[nodiscard, gnu::cold, gnu::noinline]] JointState slowed() const noexcept {
+  [[nodiscard, gnu::cold, gnu::noinline]] JointVector slowed() const noexcept {
     const Scalar decrease = std::min(Scalar(40), Scalar(0.5) / motion.dt);
-    return after(entrywise(joints.qd, [&](Eigen::Index i) {
+    return entrywise(joints.qd, [&](Eigen::Index i) {
       const Scalar rate = -decrease * joints.qd.coeff(i);
       return kLevel == Level::kAcceleration ? rate : joints.qd.coeff(i) + motion.dt * rate;
-    }));
+    });
   }
   /// Mean motion of a tick to the state `next`.
   [[nodiscard]] JointVector motion_to(const JointState& next) const noexcept { return motion.between(joints, next); }

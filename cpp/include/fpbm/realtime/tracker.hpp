@@ -2,12 +2,13 @@
 
 #include <array>
 
+#include "fpbm/realtime/account.hpp"
+#include "fpbm/realtime/desire.hpp"
 #include "fpbm/realtime/held_level.hpp"
 #include "fpbm/realtime/joint_approach.hpp"
-#include "fpbm/realtime/limited_state.hpp"
+#include "fpbm/realtime/limit.hpp"
 #include "fpbm/realtime/measured_limiter.hpp"
-#include "fpbm/realtime/measured_tick.hpp"
-#include "fpbm/realtime/no_lower_levels.hpp"
+#include "fpbm/realtime/prove.hpp"
 #include "fpbm/realtime/reference_sources.hpp"
 #include "fpbm/realtime/require_stable.hpp"
 #include "fpbm/realtime/tick.hpp"
@@ -63,9 +64,7 @@ class Tracker {
           const Limits<kLevel, N, Scalar>& limits, const JointVector& qdd0, const Guard_& guard = {})
       : arm_(arm),
         scheme_(scheme),
-        continuous_(continuous_joints(arm, limits.bounds())),
-        limited_(options, limits, start, qdd0, guard, continuous_),
-        lower_levels_(options.stall_time, options.dt),
+        state_(options, limits, start, qdd0, guard, continuous_joints(arm, limits.bounds())),
         measured_(limits, options.measured_delay),
         last_command_(qdd0) {
     scheme.require_dof(arm.dof());
@@ -85,11 +84,11 @@ class Tracker {
     Kinematics<Space, N, Scalar> kinematics;
     arm_.kinematics(start.q, kinematics);
     DefaultDamping<Scalar> damping = options.damping(arm.dof(), first_rows(kinematics).rows());
-    damping.continuous = continuous_;
+    damping.continuous = state_.continuous;
     give_damping(scheme_, damping);
     require_stable(scheme_, TickOfGains<Scalar>{options.dt, options.integral_gain});
-    if constexpr (kGuarded) limited_.guard().require_clear(limits, start, qdd0);
-    limited_.begin_at(kinematics.tip, kinematics.length);
+    if constexpr (kGuarded) state_.guard.require_clear(limits, start, qdd0);
+    if (!state_.returning) state_.progress.begin_at(start.q, kinematics.tip, kinematics.length);
   }
 
   Tracker(const Arm& arm, Space space, const Scheme& scheme, const JointState& start, const Options& options = {})
@@ -100,7 +99,7 @@ class Tracker {
 
   /// One tick toward a reference, which continues at constant acceleration until the end of the tick.
   Result tick(const Target& reference) noexcept {
-    return advance(References::of([&](Scalar t) noexcept { return ahead(reference, t); }, limited_.dt()));
+    return advance(References::of([&](Scalar t) noexcept { return ahead(reference, t); }, state_.dt()));
   }
 
   /// One tick with a source of references: a PathFollower, whose clock advances unless the arm stops, or a
@@ -108,112 +107,80 @@ class Tracker {
   template <typename... Sources>
   Result tick(Sources&... sources) noexcept {
     const Result result =
-        advance(References::of([&](Scalar t) noexcept { return joined(Space{}, t, sources...); }, limited_.dt()));
-    (advance_source(sources, limited_.dt(), limited_.stopping()), ...);
+        advance(References::of([&](Scalar t) noexcept { return joined(Space{}, t, sources...); }, state_.dt()));
+    (advance_source(sources, state_.dt(), state_.stopping), ...);
     return result;
   }
 
   /// One tick with references.
-  Result advance(References references) noexcept {
-    const JointState& state = limited_.state();
-    const auto& correction = limited_.correction();
-    Result result = limited_.idle(state);
-    Loop loop{arm_, scheme_, {}, state, filled<JointVector>(state.q.size())};
-    points(state.q, loop.kinematics);
-    remove_turns(arm_, loop.kinematics.tip, continuous_, references.stages);
-    if constexpr (kHasLevels) {
-      if (limited_.keeps_stopping()) held_level_.hold(references, loop.kinematics.tip, loop.kinematics.length);
-    }
-    measure_error(loop.kinematics, references.stages[0], result);
-    if (lower_levels_.hold(references, loop.kinematics, result.error, limited_.correction())) {
-      begin_correction(task_error(loop.kinematics, references.stages[0].x), correction.length());
-    }
-    const Target now = references.stages[0];
-    if (correction.active()) {
-      for (Target& stage : references.stages) stage = correction(stage);
-    }
-    const auto rows = limited_.rows();
-    JointState next = state;
-    resolve(loop, limited_.tick().update_middle(loop, references, gains_of<Scalar>(scheme_)), result);
-    if (!failed(result.status)) next = limited_.tick().after(loop.motion());
-    if (lower_levels_.rests() && !failed(result.status)) next = limited_.tick().slowed();
-    limited_.finish_tick(loop, now, rows, next, result);
-    lower_levels_.report(result);
-    report_levels(loop.kinematics, now.x, result);
-    lower_levels_.end_tick(!limited_.stopping() && !failed(result.status), limited_.state().qd,
-                           Scalar(guard().near_distance_sum()), correction.length());
+  Result advance(const References& references) noexcept {
+    Result result = state_.idle(state_.tick.joints);
+    const auto desired = desire(arm_, scheme_, state_, references, result);
+    finish_tick(desired, state_.rows(), result);
     return result;
   }
 
   /// For a tick whose desired motion is computed elsewhere (TrackerBatch). begin(): error at the start of the tick.
   /// Returns whether corrected() must replace the references before the motion is computed. finish(): `now` is the
-  /// reference at the start of the tick, not corrected. `references` are corrected. `next` is the state after the
-  /// desired motion.
+  /// reference at the start of the tick, not corrected. `references` are corrected. u: desired motion.
   bool begin(const Vector<Space::kRows, Scalar>& error, Scalar length) noexcept {
-    begin_correction(error, length);
-    return limited_.correction().active();
+    begin_correction(arm_, state_, error, length);
+    return state_.correction.active();
   }
-  [[nodiscard]] Target corrected(const Target& reference) const noexcept { return limited_.correction()(reference); }
-  Status finish(const Target& now, const References& references, const JointState& next) noexcept {
-    Result result = limited_.idle(state());
-    result.error = limited_.correction().error();
-    Loop loop{arm_, scheme_, {}, state(), filled<JointVector>(state().q.size())};
-    const auto rows = limited_.rows();
-    if (!limited_.is_free(rows, next)) {
-      points(state().q, loop.kinematics);
-      (void)limited_.tick().update_middle(loop, references, gains_of<Scalar>(scheme_));
+  [[nodiscard]] Target corrected(const Target& reference) const noexcept { return state_.correction(reference); }
+  Status finish(const Target& now, const References& references, const JointVector& u) noexcept {
+    Result result = state_.idle(state());
+    result.error = state_.correction.error();
+    Desired<Loop, Space, N, Scalar> desired{
+        {arm_, scheme_, {}, state(), filled<JointVector>(state().q.size())}, now, u};
+    const auto rows = state_.rows();
+    if (state_.stopping || !state_.admits(rows, u)) {
+      points_of(arm_, state().q, desired.loop.kinematics, 0);
+      (void)state_.tick.update_middle(desired.loop, references, gains_of<Scalar>(scheme_));
     }
-    limited_.finish_tick(loop, now, rows, next, result);
+    finish_tick(desired, rows, result);
     return result.status;
   }
 
   /// Acceleration of the last tick and its change from the tick before (TickState).
-  [[nodiscard]] const TickState<kLevel, Space, N, Scalar>& tick_state() const noexcept { return limited_.tick(); }
+  [[nodiscard]] const TickState<kLevel, Space, N, Scalar>& tick_state() const noexcept { return state_.tick; }
 
   /// Acceleration within the limits for a measured state that is at most options.measured_delay ticks old. The
   /// tracker's own state does not change. Never stalls: without feedback of the tip, a measured arm would sag.
   [[nodiscard]] Result resolve_measured(const JointVector& q, const JointVector& qd, const Target& reference) noexcept {
     static_assert(kLevel == Level::kAcceleration, "resolve_measured() is for schemes that return accelerations");
     const JointState measured{q, qd};
-    Result result = limited_.idle(measured);
-    if (!limited_.is_brakable(measured)) {
+    Result result = state_.idle(measured);
+    if (!state_.is_brakable(measured)) {
       result.status = Status::kNotFinite;
       multiply_scale(result, Scalar(0));
-      result.qdd = last_command_ = fade(limited_.limits(), last_command_);
+      result.qdd = last_command_ = fade(state_.limits(), last_command_);
       return result;
     }
-    Loop loop{arm_, scheme_, {}, measured, filled<JointVector>(q.size())};
-    loop.update(Loop::packed(measured));
-    std::array<Target, 1> now{reference};
-    remove_turns(arm_, loop.kinematics.tip, continuous_, now);
-    measure_error(loop.kinematics, now[0], result);
-    resolve(loop, limited_.correction()(now[0]), result);
-    result.qdd = last_command_ = limit_measured(loop, measured_, limited_, measured, last_command_, result);
-    report_levels(loop.kinematics, reference.x, result);
+    const auto desired = desire_measured(arm_, scheme_, state_, measured, reference, result);
+    result.qdd = last_command_ = limit_measured(state_, measured_, desired, last_command_, result);
+    if (result.status == Status::kOk) state_.correction.integrate(result);
+    report_levels(desired.loop.kinematics, reference.x, result);
     return result;
   }
 
   /// Brings every joint to rest as fast as the limits allow, for any reference, until resume() is called. With
   /// options.keep_first_level, the joints stop in the null space of the first level.
-  void stop() noexcept { limited_.stop(); }
-  void resume() noexcept {
-    limited_.resume();
-    held_level_.release();
-    lower_levels_.release();
-  }
+  void stop() noexcept { state_.stopping = true; }
+  void resume() noexcept { state_.resume(); }
 
-  [[nodiscard]] const JointState& state() const noexcept { return limited_.state(); }
+  [[nodiscard]] const JointState& state() const noexcept { return state_.tick.joints; }
   /// Acceleration of the last tick.
-  [[nodiscard]] const JointVector& acceleration() const noexcept { return limited_.last(); }
+  [[nodiscard]] const JointVector& acceleration() const noexcept { return state_.tick.last; }
   [[nodiscard]] const Arm& arm() const noexcept { return arm_; }
   /// Bits of the continuous joints.
-  [[nodiscard]] JointBits continuous() const noexcept { return continuous_; }
+  [[nodiscard]] JointBits continuous() const noexcept { return state_.continuous; }
   /// Enables or disables level k of a stack, counted from 0. The first level is always enabled. The commands stay
   /// within all bounds. If there is no lower level k, returns false without an effect.
   bool enable(int k, bool on) noexcept {
     static_assert(kIsProduct<Space>, "only a stack has levels to enable");
     if (!arm_.enable(k, on)) return false;
-    lower_levels_.release();
+    state_.lower_levels.release();
     return true;
   }
 
@@ -224,16 +191,16 @@ class Tracker {
   bool reorder(const Order& order) noexcept {
     static_assert(kIsProduct<Space>, "only a stack has levels to reorder");
     if (!arm_.reorder(order)) return false;
-    limited_.correction().reset_integrals(0, Space::kRows);
-    held_level_.release();
-    lower_levels_.release();
+    state_.correction.reset_integrals(0, Space::kRows);
+    state_.held_level.release();
+    state_.lower_levels.release();
     return true;
   }
 
   /// The guard: shapes to avoid, and their distances at the start of the last tick. Move shapes of the world with the
   /// functions of the guard.
-  [[nodiscard]] Guard_& guard() noexcept { return limited_.guard(); }
-  [[nodiscard]] const Guard_& guard() const noexcept { return limited_.guard(); }
+  [[nodiscard]] Guard_& guard() noexcept { return state_.guard; }
+  [[nodiscard]] const Guard_& guard() const noexcept { return state_.guard; }
 
   /// Tip f(q) of the tracker's own state, the usual start of a PathFollower.
   [[nodiscard]] typename Space::template Point<Scalar> tip() const noexcept {
@@ -245,37 +212,17 @@ class Tracker {
  private:
   using Loop = ClosedLoop<Arm, Scheme, Space>;
   using Measured = std::conditional_t<kLevel == Level::kAcceleration, MeasuredLimiter<N, Scalar>, NoMeasuredLimiter>;
-  using X = typename Loop::X;
 
-  /// Points of the tasks at q, without derivatives of J.
-  void points(const JointVector& q, Kinematics<Space, N, Scalar>& kinematics) const noexcept {
-    points_of(arm_, q, kinematics, 0);
-  }
-
-  void measure_error(const Kinematics<Space, N, Scalar>& kinematics, const Target& reference, Result& result) noexcept {
-    result.error = task_error(kinematics, reference.x);
-    begin_correction(result.error, kinematics.length);
-  }
-  void begin_correction(const Vector<Space::kRows, Scalar>& error, Scalar length) noexcept {
-    limited_.correction().begin(error, length);
-    approach_postures<kLevel, Space>(arm_, limited_.limits(), limited_.correction(), [](int) { return Scalar(0); });
-  }
-
-  /// Motion of the scheme after update(). σ is from the factorisation of the scheme, or from a factorisation of JJᵀ if
-  /// the scheme does not report σ.
-  static void resolve(Loop& loop, const Target& reference, Result& result) noexcept {
-    X dx = Loop::packed(loop.state);
-    result.sigma = Scalar(-1);
-    result.status = loop.resolve(reference, dx, &result.sigma);
-    if (result.sigma < Scalar(0)) result.sigma = least_singular_value_bound(first_rows(loop.kinematics));
+  template <typename Rows_>
+  void finish_tick(const Desired<Loop, Space, N, Scalar>& desired, const Rows_& rows, Result& result) noexcept {
+    const bool damped = result.status == Status::kDamped;
+    const JointVector u = limit(state_, desired, rows, result);
+    account(state_, desired, prove(state_, u, result), damped, result);
   }
 
   Arm arm_;
   Scheme scheme_;
-  JointBits continuous_;  ///< Bits of the continuous joints.
-  LimitedState<kLevel, Space, N, Scalar, Guard_> limited_;
-  typename LowerLevelsOf<Space, Scalar>::type lower_levels_;
-  std::conditional_t<kHasLevels, HeldLevel<Space, Scalar>, NoHeldLevel> held_level_;
+  TrackerState<kLevel, Space, N, Scalar, Guard_> state_;
   Measured measured_;
   JointVector last_command_;  ///< Last command for a measured state.
 };

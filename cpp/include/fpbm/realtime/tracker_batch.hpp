@@ -68,11 +68,10 @@ class TrackerBatch {
       const Scalar length = loop.kinematics.length[lane];
       if (trackers_[lane].begin(lane_of(sample.error, lane), length)) correct(references, lane);
     }
-    State<N, In> next = loop.state;
-    const Mask<In> stepped = desired_motion(loop, references, next);
+    Vector<N, In> u = loop.state.qd;
+    const Mask<In> stepped = desired_motion(loop, references, u);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const Status status =
-          stepped[lane] ? finish(lane, sample.reference, references, next) : alone(lane, displacements);
+      const Status status = stepped[lane] ? finish(lane, sample.reference, references, u) : alone(lane, displacements);
       status_[lane] = worse(status_[lane], status);
       set_lane(sample.qdd, lane, Vector<N, Scalar>(trackers_[lane].acceleration()));
     }
@@ -93,9 +92,9 @@ class TrackerBatch {
   }
 
   /// Desired motion of a tick (Tracker::advance()). Before the call, `loop` has the tips at the start of the tick. Sets
-  /// `next` to the state after the tick. Returns the lanes in which the motion is finite.
+  /// u to this motion. Returns the lanes in which the motion is finite.
   [[nodiscard]] Mask<In> desired_motion(Loop& loop, const TickReferences<Space, In>& references,
-                                        State<N, In>& next) noexcept {
+                                        Vector<N, In>& u) noexcept {
     TickState<Scheme::kLevel, Space, N, In> state{{In(references.dt)}, loop.state, loop.state.qd, loop.state.qd};
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       set_lane(state.last, lane, Vector<N, Scalar>(trackers_[lane].tick_state().last));
@@ -104,17 +103,17 @@ class TrackerBatch {
     X dx = Loop::packed(loop.state);
     const auto middle = state.update_middle(loop, references, gains_of<In>(scheme_));
     if (failed(loop.resolve(middle, dx))) return Mask<In>(false);
-    next = state.after(loop.motion());
-    const In zero = (next.q.sum() + next.qd.sum()) * In(0);  // Inf and NaN make the sum NaN.
+    u = loop.motion();
+    const In zero = u.sum() * In(0);  // Inf and NaN make the sum NaN.
     return zero == In(0);
   }
 
-  /// Ends the tick of a tracker. x: state after the desired motion.
+  /// Ends the tick of a tracker. u: desired motion.
   [[nodiscard]] Status finish(std::size_t lane, const Reference<Space, In>& now, const TickReferences<Space, In>& all,
-                              const State<N, In>& next) noexcept {
+                              const Vector<N, In>& u) noexcept {
     TickReferences<Space, Scalar> references{{}, all.dt};
     for (std::size_t i = 0; i < all.stages.size(); ++i) references.stages[i] = of_lane(all.stages[i], lane);
-    return trackers_[lane].finish(of_lane(now, lane), references, {lane_of(next.q, lane), lane_of(next.qd, lane)});
+    return trackers_[lane].finish(of_lane(now, lane), references, lane_of(u, lane));
   }
 
   /// Computes the whole tick of a tracker.
