@@ -1,6 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <bitset>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -22,9 +25,7 @@ namespace fpbm {
 ///
 /// where `rest` is a braking motion within the box. The algorithm starts from u = rest and s = 0, and raises s. If a
 /// joint meets its bound, the joint is held on the bound, and other joints compensate by the null-space motion of least
-/// norm in the units of the joints. If the bounds do not admit the null-space part p = Z Zᵀ(desired − rest) from `rest`,
-/// p is first reduced along its line. Otherwise, joints that cannot stop within a tick would be on their bounds at once,
-/// and the other joints would accelerate to compensate. If no null-space motion can compensate, a joint whose bound blocks the task is
+/// norm in the units of the joints. If no null-space motion can compensate, a joint whose bound blocks the task is
 /// released, as in the simplex method. If no joint can be released, s is the optimum of a linear program. Each bound
 /// that is met costs one pass. There are at most 3n passes (random problems need up to 1.7n). After every pass, u is in
 /// the box and on the line of the task.
@@ -96,51 +97,42 @@ class NullSpaceSaturation {
         lower(joints + k) = -std::numeric_limits<Scalar>::infinity();
       }
     }
-    reduce_null_space_part(goal, lower, upper, joints);
+    SaturatedMotion<N, Scalar> result{rest, Scalar(0), 0, 0};
+    hit_.reset();
+    const Scalar given = largest_magnitude(goal);
+    held_.begin(std::min(Held::kSteepest, compensation_ * given));
     All u(n);
     for (Eigen::Index i = 0; i < n; ++i) u.coeffRef(i) = Scalar(0);
-    SaturatedMotion<N, Scalar> result{rest, Scalar(0), 0, 0};
-    held_.begin(std::min(Held::kSteepest, compensation_ * largest_magnitude(goal)));
-    const Eigen::Index most = kPasses * n;
-    while (result.passes < most) {
-      ++result.passes;
-      const All rate = held_.direction(Z_, goal);
-      const Scalar fastest = largest_magnitude(rate);
-      if (fastest > held_.steepest()) break;
-      const Scalar still = kStill * fastest;
-      Scalar step = Scalar(1) - result.scale;
-      Eigen::Index hit = -1;
-      for (Eigen::Index i = 0; i < n; ++i) {
-        if (!(abs(rate(i)) > still) || held_.has(i)) continue;
-        const Scalar distance = ((rate(i) > Scalar(0) ? upper(i) : lower(i)) - u(i)) / rate(i);
-        if (distance < step) {
-          step = distance > Scalar(0) ? distance : Scalar(0);
-          hit = i;
-        }
+    const auto round_off = [&](Scalar fastest) noexcept {
+      Scalar size(0);
+      for (Eigen::Index i = 0; i < joints; ++i) {
+        size = std::max(size, (abs(desired.coeff(i)) + abs(rest.coeff(i))) / unit_.coeff(i));
       }
-      for (Eigen::Index i = 0; i < n; ++i) u.coeffRef(i) += step * rate.coeff(i);
-      result.scale = hit < 0 ? Scalar(1) : result.scale + step;
-      if (hit < 0) break;
-      const bool above = rate(hit) > Scalar(0);
-      u(hit) = above ? upper(hit) : lower(hit);
-      const auto round_off = [&]() noexcept {
-        Scalar given(0);
-        for (Eigen::Index i = 0; i < joints; ++i) {
-          given = std::max(given, (abs(desired.coeff(i)) + abs(rest.coeff(i))) / unit_.coeff(i));
-        }
-        return Held::kRoundOff * (fastest + largest_magnitude(goal)) + kStill * given;
-      };
-      if (!held_.hold(Z_, hit, above, abs(rate(hit)), Scalar(1) - result.scale, round_off)) {
-        count(result, hit, joints);
-        break;
+      return Held::kRoundOff * (fastest + given) + kStill * size;
+    };
+    const All preferred = null_space_part(goal, joints);
+    for (Eigen::Index i = 0; i < n; ++i) goal.coeffRef(i) -= preferred.coeff(i);
+    result.scale = move(u, goal, lower, upper, round_off, result);
+    const All compensation = null_space_part(u, joints);
+    for (Eigen::Index i = 0; i < n; ++i) goal.coeffRef(i) = preferred.coeff(i) - compensation.coeff(i);
+    if (largest_magnitude(goal) > Held::kRoundOff * given) {
+      held_.begin(Held::kSteepest);
+      (void)move(u, goal, lower, upper, round_off, result);
+    }
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const bool above = u.coeff(i) == upper.coeff(i);
+      if (!hit_[static_cast<std::size_t>(i)] || (!above && u.coeff(i) != lower.coeff(i))) continue;
+      if (i >= joints) {
+        result.rows |= std::uint32_t(1) << (i - joints);
+        continue;
       }
+      result.joints |= joint_bit(i);
     }
     result.u =
         box.nearest(entrywise(rest, [&](Eigen::Index i) { return rest.coeff(i) + unit_.coeff(i) * u.coeff(i); }));
-    for (int i = 0; i < held_.count(); ++i) {
-      const auto [joint, above] = held_[i];
-      count(result, joint, joints);
-      if (joint < joints) result.u(joint) = above ? box.upper(joint) : box.lower(joint);
+    for (Eigen::Index i = 0; i < joints; ++i) {
+      if ((result.joints >> i & 1U) == 0) continue;
+      result.u.coeffRef(i) = u.coeff(i) == upper.coeff(i) ? box.upper.coeff(i) : box.lower.coeff(i);
     }
     return result;
   }
@@ -207,29 +199,52 @@ class NullSpaceSaturation {
     }
   }
 
-  /// Subtracts from the goal the part of p that the bounds do not admit.
-  void reduce_null_space_part(All& goal, const All& lower, const All& upper, Eigen::Index joints) const noexcept {
-    using std::abs;
-    All p(goal.size());
-    for (Eigen::Index i = 0; i < p.size(); ++i) p.coeffRef(i) = Scalar(0);
+  /// Z Zᵀv, over the joints.
+  [[nodiscard]] All null_space_part(const All& v, Eigen::Index joints) const noexcept {
+    All part(v.size());
+    for (Eigen::Index i = 0; i < v.size(); ++i) part.coeffRef(i) = Scalar(0);
     for (Eigen::Index j = 0; j < Z_.cols(); ++j) {
       Scalar along(0);
-      for (Eigen::Index i = 0; i < joints; ++i) along += Z_.coeff(i, j) * goal.coeff(i);
-      for (Eigen::Index i = 0; i < p.size(); ++i) p.coeffRef(i) += along * Z_.coeff(i, j);
+      for (Eigen::Index i = 0; i < joints; ++i) along += Z_.coeff(i, j) * v.coeff(i);
+      for (Eigen::Index i = 0; i < v.size(); ++i) part.coeffRef(i) += along * Z_.coeff(i, j);
     }
-    const Scalar still = kStill * largest_magnitude(goal);
-    Scalar admitted(1);
-    for (Eigen::Index i = 0; i < p.size(); ++i) {
-      if (!(abs(p.coeff(i)) > still)) continue;
-      const Scalar most = (p.coeff(i) > Scalar(0) ? upper.coeff(i) : lower.coeff(i)) / p.coeff(i);
-      if (most < admitted) admitted = most > Scalar(0) ? most : Scalar(0);
-    }
-    for (Eigen::Index i = 0; i < p.size(); ++i) goal.coeffRef(i) -= (Scalar(1) - admitted) * p.coeff(i);
+    return part;
   }
 
-  static void count(SaturatedMotion<N, Scalar>& result, Eigen::Index held, Eigen::Index joints) noexcept {
-    if (held < joints) result.joints |= joint_bit(held);
-    if (held >= joints) result.rows |= std::uint32_t(1) << (held - joints);
+  /// Moves u along the goal and null-space motion, until the fraction of the goal is 1 or the bounds admit no more.
+  /// Returns this fraction.
+  template <typename RoundOff>
+  [[nodiscard]] Scalar move(All& u, const All& goal, const All& lower, const All& upper, const RoundOff& round_off,
+                            SaturatedMotion<N, Scalar>& result) noexcept {
+    using std::abs;
+    const Eigen::Index n = u.size();
+    Scalar scale(0);
+    for (Eigen::Index pass = 0; pass < kPasses * n; ++pass) {
+      ++result.passes;
+      const All rate = held_.direction(Z_, goal);
+      const Scalar fastest = largest_magnitude(rate);
+      if (fastest > held_.steepest()) break;
+      const Scalar still = kStill * fastest;
+      Scalar step = Scalar(1) - scale;
+      Eigen::Index hit = -1;
+      for (Eigen::Index i = 0; i < n; ++i) {
+        if (!(abs(rate(i)) > still) || held_.has(i)) continue;
+        const Scalar distance = ((rate(i) > Scalar(0) ? upper(i) : lower(i)) - u(i)) / rate(i);
+        if (distance < step) {
+          step = distance > Scalar(0) ? distance : Scalar(0);
+          hit = i;
+        }
+      }
+      for (Eigen::Index i = 0; i < n; ++i) u.coeffRef(i) += step * rate.coeff(i);
+      if (hit < 0) return Scalar(1);
+      scale += step;
+      const bool above = rate(hit) > Scalar(0);
+      u(hit) = above ? upper(hit) : lower(hit);
+      hit_[static_cast<std::size_t>(hit)] = true;
+      if (!held_.hold(Z_, hit, above, abs(rate(hit)), Scalar(1) - scale, [&]() noexcept { return round_off(fastest); }))
+        break;
+    }
+    return scale;
   }
 
   Basis Z_;  ///< Basis of the null space in the units of the joints.
@@ -237,6 +252,7 @@ class NullSpaceSaturation {
   Scalar compensation_ = std::numeric_limits<Scalar>::infinity();
   Rows<N, P, Scalar> rows_;  ///< Scaled to length 1.
   Held held_;
+  std::bitset<kMost + P> hit_;  ///< Whether a joint or row has met a bound.
 };
 
 }  // namespace fpbm

@@ -76,7 +76,9 @@ template <typename... Levels, int N, typename Scalar>
   return scale;
 }
 
-/// Jacobians of the levels at the state of the kinematics, for the limits. See jacobian_in_metres() of one task.
+/// Jacobians of the levels, for the limits. A level without lower levels is treated like one task: at the state of the
+/// kinematics. Several levels keep the lead of continue_tick(): otherwise, limits of lower levels would disturb higher
+/// levels at the end of the tick (Stack.keeps_its_first_level_while_lower_ones_are_limited).
 template <typename... Levels, int N, typename Scalar>
 [[nodiscard]] auto jacobian_in_metres(const Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics) noexcept {
   auto levels = std::apply(
@@ -84,7 +86,7 @@ template <typename... Levels, int N, typename Scalar>
         return TaskLevels<N, Scalar, std::decay_t<decltype(rows.matrix())>...>(kinematics.enabled, rows.matrix()...);
       },
       kinematics.levels);
-  if (kinematics.tick > Scalar(0)) {
+  if (kinematics.tick > Scalar(0) && !has_lower_levels(kinematics)) {
     kinematics.each_task([&](auto level, const auto& task, Eigen::Index row) noexcept {
       constexpr std::size_t kLevel = decltype(level)::value;
       levels.template add_lead<kLevel>(row, task.S.rows(), -task.feedback.lead, std::get<kLevel>(kinematics.levels));
