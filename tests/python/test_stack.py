@@ -500,6 +500,20 @@ def test_a_simulated_stack_of_one_task_equals_the_task(panda, alone, law, radius
     assert many.replay() == many
 
 
+@pytest.mark.parametrize(
+    "law", [fp.MVN(), fp.Balanced(0.6, np.ones(7), null_damping=2)], ids=["velocity", "acceleration"]
+)
+@pytest.mark.parametrize("dt", [0.01, 0.001])
+def test_rows_along_the_axes_of_a_rotating_frame_are_no_lost_task(panda, law, dt):
+    """If selected axes rotate, the free displacement moves into the rows; this growth is no error of the steps."""
+    free = fp.Stack(fp.PositionTask(axes="frame", rows=("x", "y"), name="place"), fp.AxisTask(x=[1, 0, -1]))
+    run = fp.simulate(panda, fp.Circle(0.08, 2.0).in_plane("yz"), law, READY, stack=free, task="place", dt=dt)
+    assert run.status.code is fp.Status.OK
+    turned = fp.Stack(fp.PoseTask(axes="frame", rows=("x", "y", "z", "rx", "ry")))
+    path = fp.Circle(0.08, 2.0).in_plane("yz").with_rotation([0.3, 0.2, 1.2])
+    assert fp.simulate(panda, path, law, READY, stack=turned, dt=dt).status.code is fp.Status.OK
+
+
 def test_a_simulated_stack_holds_targets_and_ends_each_path_in_time(panda):
     """A task with a target converges to the target, and a task whose path has ended stays at the end of the path."""
     stack = fp.Stack(fp.PositionTask(name="hand"), fp.AxisTask(x=[0, 0.3, -1], name="tool"), fp.PostureTask(READY))

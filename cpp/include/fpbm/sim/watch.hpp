@@ -99,10 +99,11 @@ class TaskWatch {
     const Scalar step = h * state.qd.cwiseAbs().maxCoeff();
     const Scalar largest_entry = J.cwiseAbs().maxCoeff();
     const TaskVector velocity = J.lazyProduct(state.qd);
-    const TaskVector e = rows(Space::template difference<Scalar>(arrived.x, kinematics.tip));
+    const Vector<Space::kRows, Scalar> error = Space::template difference<Scalar>(arrived.x, kinematics.tip);
+    const TaskVector e = rows(error);
     const TaskVector ed = rows(reference.xd) - velocity;
     const Scalar travel = rows(Space::template difference<Scalar>(arrived.x, before_.x)).norm();
-    const Scalar growth = position_.growth(e, h);
+    const Scalar growth = position_.growth(e, h) - error_selection_.of_error(kinematics, error);
     Mask<Scalar> follows =
         step <= Scalar(kLargestStep) && position_.follows(growth, e, ed, h, travel, step, largest_entry);
     if (damped) {
@@ -116,7 +117,7 @@ class TaskWatch {
       const TaskVector edd = rows(reference.xdd) - J.lazyProduct(qdd) - first_rates(kinematics).lazyProduct(state.qd);
       const Scalar change = rows(arrived.xd - before_.xd).norm();
       const TaskVector ed_before = rows(arrived.xd) - velocity;
-      const Scalar faster = velocity_.growth(ed_before, h);
+      const Scalar faster = velocity_.growth(ed_before, h) - rate_selection_.of_rate(kinematics, arrived.xd);
       follows = follows && velocity_.follows(faster, ed_before, edd, h, change, step, largest_entry / h);
       if (!damped) {
         made_ += h * made_rate_;
@@ -148,6 +149,8 @@ class TaskWatch {
   Scalar made_{0};       ///< Upper bound on the discretisation error.
   Scalar made_rate_{0};  ///< Upper bound on the discretisation error of the velocity.
   Scalar undamped_error_{0};
+  SelectionGrowth<Space, N, Scalar> error_selection_;
+  SelectionGrowth<Space, N, Scalar> rate_selection_;
   ErrorWatch<kRows, Scalar> position_;
   ErrorWatch<kRows, Scalar> velocity_;
   Reference<Space, Scalar> before_;
