@@ -29,10 +29,10 @@ from scipy.spatial import ConvexHull
 from fpbm_cpp.arms import SerialArm
 from fpbm_cpp.capsule import Capsule
 from fpbm_cpp.clearance import Clearance
-from fpbm_cpp.io.capsule_fit import distances
-from fpbm_cpp.io.capsules import capsules_of
-from fpbm_cpp.io.urdf import read_places
-from fpbm_cpp.io.urdf_shapes import Shape, read_shapes
+from fpbm_cpp.urdf.capsule_fit import distances
+from fpbm_cpp.urdf.capsules import capsules_of
+from fpbm_cpp.urdf.chain import read_places
+from fpbm_cpp.urdf.shapes import Shape, read_shapes
 
 ARMS = {
     "Panda, meshes": ("panda_description/urdf/panda.urdf", "panda_hand", None),

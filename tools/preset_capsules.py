@@ -21,8 +21,8 @@ from numpy.typing import ArrayLike, NDArray
 from fpbm_cpp import SerialArm
 from fpbm_cpp._core import rotation
 from fpbm_cpp.capsule import Capsule
-from fpbm_cpp.io.capsules import capsules_of
-from fpbm_cpp.io.mesh_file import find_mesh
+from fpbm_cpp.urdf.capsules import capsules_of
+from fpbm_cpp.urdf.mesh_file import find_mesh
 
 HEADER = Path(__file__).parent.parent / "cpp/include/fpbm/clearance/preset_capsules.hpp"
 GRID = 1e-4  # [m]

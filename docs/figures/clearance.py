@@ -25,7 +25,6 @@ import fpbm_cpp as fp
 from fpbm_cpp.plot import OKABE_ITO
 from fpbm_cpp.plot.animation import write_frames
 from fpbm_cpp.skeleton import link_frames
-from fpbm_cpp.viewer.gap import core, nearest_points
 
 FPS, SPEED = 12.5, 1.5
 PANDA = fp.SerialArm.preset("panda")
@@ -86,7 +85,8 @@ def draw(axes: Any, clearance: fp.Clearance, q: np.ndarray, trail: np.ndarray) -
     frames = link_frames(PANDA, q)
     shapes = []
     for each in (*clearance.capsules, POST):
-        ends = core(each, frames)
+        frame = frames[each.link]
+        ends = np.array([each.a, each.b]) @ frame[:3, :3].T + frame[:3, 3]
         hit = nearest.distance < 0 and each.name in nearest.pair
         colour = WRONG if hit else WORLD if each is POST else LINK
         shapes.append((ends.mean(axis=0), each.radius, ends, np.array(to_rgb(colour))))
@@ -98,7 +98,7 @@ def draw(axes: Any, clearance: fp.Clearance, q: np.ndarray, trail: np.ndarray) -
     axes.add_collection(PolyCollection(slab(TABLE), facecolors=colours, edgecolors="white", lw=0.5))
     axes.add_collection(_bodies(over))
     axes.plot(*(trail @ VIEW.T).T, color="black", lw=0.9, ls=(0, (3, 2)))
-    axes.plot(*(nearest_points(clearance, frames, nearest.pair) @ VIEW.T).T, color=GAP, lw=2.5, marker=".", ms=6)
+    axes.plot(*(nearest.points @ VIEW.T).T, color=GAP, lw=2.5, marker=".", ms=6)
     return float(nearest.distance)
 
 

@@ -62,8 +62,12 @@ void add_bounds(Clearance<kDynamic>& clearance, const Model& model, const py::ob
 
 std::optional<PyNearest> nearest_at(const Clearance<kDynamic>& clearance, const JointVector& q) {
   if (clearance.shape_pairs() == 0) return std::nullopt;
-  const auto [pair, distance] = clearance.nearest_pair(q);
-  return PyNearest{clearance.names(clearance.pairs()[pair]), distance};
+  auto placed = clearance.placement();
+  const ShapePair& pair = clearance.pairs()[clearance.nearest_pair(q, placed).first];
+  const auto found = clearance.nearest_of(placed, pair);
+  Matrix<2, 3> points;
+  points << found.on_first.transpose(), found.on_second.transpose();
+  return PyNearest{clearance.names(pair), found.distance, points};
 }
 
 void move_obstacle(Clearance<kDynamic>& clearance, const std::string& name, const Shape& shape,
@@ -167,6 +171,9 @@ void bind_clearance(py::module_& m) {
   py::class_<PyNearest>(m, "Nearest", "The nearest checked pair of shapes.")
       .def_readonly("pair", &PyNearest::pair, "Names: of a capsule of the arm, and of the other shape.")
       .def_readonly("distance", &PyNearest::distance, "Distance [m]; if negative, the penetration depth.")
+      .def_property_readonly(
+          "points", [](const PyNearest& nearest) { return array_of(nearest.points); },
+          "Nearest points on the surfaces of both shapes in the base frame, shape (2, 3) [m].")
       .def("__repr__", [](const PyNearest& nearest) {
         return py::str("<Nearest: {} and {}, {:.6g} m apart>")
             .format(nearest.pair.first, nearest.pair.second, nearest.distance);

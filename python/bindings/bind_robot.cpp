@@ -2,6 +2,7 @@
 #include <pybind11/typing.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "arrays.hpp"
@@ -58,6 +59,25 @@ struct FrameState {
     model.robot.jacobian(state, link, at.p, J, Jd);
   }
 };
+
+using FrameOfLink = std::pair<int, Transform<>>;
+
+/// Frames on links in postures q, one posture per row, shape (K, frames, 4, 4).
+Array frames_in(const Model& model, const ArrayLike& q, const std::vector<FrameOfLink>& frames) {
+  const auto rows = real_array(q, "q", 2);
+  validation::require_size("a row of q", rows.shape(1), model.dof());
+  Array result({rows.shape(0), static_cast<py::ssize_t>(frames.size()), py::ssize_t{4}, py::ssize_t{4}});
+  double* out = result.mutable_data();
+  RobotState<kDynamic> state;
+  for (py::ssize_t k = 0; k < rows.shape(0); ++k) {
+    model.robot.update(JointVector(Eigen::Map<const Eigen::VectorXd>(rows.data(k, 0), model.dof())), state);
+    for (const auto& [link, offset] : frames) {
+      Pose::store(model.robot.frame(state, link, model.robot.in_joint(link, offset)), out);
+      out += Pose::kSize;
+    }
+  }
+  return result;
+}
 
 Array rows_of_task(const Matrix<6, kDynamic>& rows, const std::string& task) {
   if (task == "pose") return array_of(rows);
@@ -125,6 +145,21 @@ void bind_robot(py::module_& m) {
           "Names of the joints that have a drive, from the base on.")
       .def("bounds", &bounds_of,
            "Bounds of the joints by name, as in JointLimits, shape (n,) each; infinite if there is no bound.");
+
+  m.def(
+      "link_frames",
+      [](const Model& model, const ArrayLike& q) {
+        std::vector<FrameOfLink> links(model.tree.joints.size() + 1);
+        for (std::size_t i = 0; i < links.size(); ++i) links[i].first = static_cast<int>(i);
+        return frames_in(model, q, links);
+      },
+      py::arg("model"), py::arg("q"), "Frames of the base and of all links in postures q, shape (K, links, 4, 4).");
+  m.def(
+      "named_frames",
+      [](const Model& model, const ArrayLike& q, const std::string& frame) {
+        return frames_in(model, q, {model.frame(frame)});
+      },
+      py::arg("model"), py::arg("q"), py::arg("frame"), "A frame in postures q, shape (K, 1, 4, 4).");
 
   const auto task = py::arg("task") = "pose";
   py::class_<PyRobot, Model>(m, "Robot", "The compiled part of a robot.")

@@ -11,18 +11,21 @@ namespace {
 /// Status, time of the last sample, number of samples, and arrays with this number of filled rows.
 using Outcomes = py::typing::Tuple<Status, double, int, Arrays>;
 
-/// A whole motion, run without the interpreter's lock. With limit options, the motion keeps the limits.
+/// A whole motion, run without the interpreter's lock. With limit options, the motion keeps the limits. With stack
+/// options, the motion has several tasks.
 Outcomes rollout(const Model& arm, const Path& path, const Scheme& scheme, const ArrayLike& q0, const ArrayLike& qd0,
-                 double dt, double hold, const std::string& task, const py::object& options) {
+                 double dt, double hold, const std::string& task, const py::object& options, const py::object& tasks) {
   const State<kDynamic> start{joint_vector(q0, "q0", arm.dof()), joint_vector(qd0, "qd0", arm.dof())};
-  const std::optional<LimitOptions> limit_options = limit_options_of(options, arm, path);
-  const TimeGrid<double> grid(duration_of(path, limit_options), dt, hold);
-  return visit_space(arm, task, limit_options && limit_options->stack, [&](const auto* any, auto space) -> Outcomes {
+  const std::optional<LimitOptions> limit_options = limit_options_of(options, arm);
+  const std::optional<StackOptions> stack_options = stack_options_of(tasks, arm, path);
+  const StackOptions* const stack = pointer_to(stack_options);
+  const TimeGrid<double> grid(duration_of(path, stack), dt, hold);
+  return visit_space(arm, task, stack != nullptr, [&](const auto* any, auto space) -> Outcomes {
     using Space = decltype(space);
     const AnyPath<Space> same = path.as<Space>();
-    MotionArrays<Space> arrays(grid.samples(), arm.dof(), limit_options ? &*limit_options : nullptr);
+    MotionArrays<Space> arrays(grid.samples(), arm.dof(), pointer_to(limit_options), stack);
     const Output<Space> output = arrays.output();
-    const Motion<Space> motion{any, same, scheme, start, grid};
+    const Motion<Space> motion{any, same, scheme, start, grid, stack};
     RolloutResult<kDynamic> result;
     {
       const py::gil_scoped_release others_may_run;
@@ -34,7 +37,7 @@ Outcomes rollout(const Model& arm, const Path& path, const Scheme& scheme, const
 
 }  // namespace
 
-std::optional<LimitOptions> limit_options_of(const py::object& given, const Model& model, const Path& path) {
+std::optional<LimitOptions> limit_options_of(const py::object& given, const Model& model) {
   if (given.is_none()) return std::nullopt;
   const auto number = [&](const char* name) { return py::cast<double>(given.attr(name)); };
   const py::object limits = given.attr("limits");
@@ -47,30 +50,33 @@ std::optional<LimitOptions> limit_options_of(const py::object& given, const Mode
       !clearance.is_none()};
   limit_options.options.recover_start = py::cast<bool>(given.attr("recover_start"));
   add_bounds(limit_options.clearance, model, given.attr("bounds"));
-  if (const py::object stack = given.attr("stack"); !stack.is_none()) {
-    StackOptions options{read_stack(stack, model), {}, 0.0};
-    const auto lead = [&](const std::string& name, const Path& each) {
-      const StackTask& task = options.plan.follower(name);
-      const auto index = static_cast<std::size_t>(&task - options.plan.tasks.data());
-      if (task.kind == TaskKind::kPose) {
-        options.paths.push_back({index, each.as<Pose>()});
-      } else {
-        options.paths.push_back({index, each.as<Position<3>>()});
-      }
-      options.duration = std::max(options.duration, each.duration());
-    };
-    lead(py::cast<std::string>(given.attr("task")), path);
-    for (const auto& [name, each] : py::cast<py::dict>(given.attr("other_paths"))) {
-      lead(py::cast<std::string>(name), py::cast<const Path&>(each));
-    }
-    limit_options.stack = std::make_shared<const StackOptions>(std::move(options));
-  }
   return limit_options;
+}
+
+std::optional<StackOptions> stack_options_of(const py::object& given, const Model& model, const Path& path) {
+  if (given.is_none()) return std::nullopt;
+  StackOptions options{read_stack(given.attr("stack"), model), {}, 0.0};
+  const auto lead = [&](const std::string& name, const Path& each) {
+    const StackTask& task = options.plan.follower(name);
+    const auto index = static_cast<std::size_t>(&task - options.plan.tasks.data());
+    if (task.kind == TaskKind::kPose) {
+      options.paths.push_back({index, each.as<Pose>()});
+    } else {
+      options.paths.push_back({index, each.as<Position<3>>()});
+    }
+    options.duration = std::max(options.duration, each.duration());
+  };
+  lead(py::cast<std::string>(given.attr("task")), path);
+  for (const auto& [name, each] : py::cast<py::dict>(given.attr("other_paths"))) {
+    lead(py::cast<std::string>(name), py::cast<const Path&>(each));
+  }
+  return options;
 }
 
 void bind_sim(py::module_& m) {
   m.def("rollout", &rollout, py::arg("arm"), py::arg("path"), py::arg("scheme"), py::arg("q0"), py::arg("qd0"),
-        py::arg("dt"), py::arg("hold"), py::arg("task"), py::arg("limit_options") = py::none());
+        py::arg("dt"), py::arg("hold"), py::arg("task"), py::arg("limit_options") = py::none(),
+        py::arg("stack_tasks") = py::none());
 }
 
 }  // namespace fpbm::bindings

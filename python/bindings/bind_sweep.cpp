@@ -39,11 +39,13 @@ JointVector row(const Array& rows, py::ssize_t i) {
 /// Checks all arguments of a sweep. Returns the starts as rows, and the number of samples of a motion.
 py::typing::Tuple<Array, int> check_sweep(const Model& arm, const Path& path, const Schemes& schemes,
                                           const ArrayLike& q0s, double dt, double hold, const std::string& task,
-                                          const py::object& options) {
+                                          const py::object& options, const py::object& tasks) {
   const Array rows = starts(q0s, arm.dof());
-  const std::optional<LimitOptions> limit_options = limit_options_of(options, arm, path);
-  const TimeGrid<double> grid(duration_of(path, limit_options), dt, hold);
-  visit_space(arm, task, limit_options && limit_options->stack, [&](const auto* any, auto space) {
+  const std::optional<LimitOptions> limit_options = limit_options_of(options, arm);
+  const std::optional<StackOptions> stack_options = stack_options_of(tasks, arm, path);
+  const StackOptions* const stack = pointer_to(stack_options);
+  const TimeGrid<double> grid(duration_of(path, stack), dt, hold);
+  visit_space(arm, task, stack != nullptr, [&](const auto* any, auto space) {
     using Space = decltype(space);
     const AnyPath<Space> same = path.as<Space>();
     const JointVector rest = JointVector::Zero(arm.dof());
@@ -52,8 +54,7 @@ py::typing::Tuple<Array, int> check_sweep(const Model& arm, const Path& path, co
       const py::ssize_t checked = limit_options ? rows.shape(0) : 1;
       for (py::ssize_t k = 0; k < checked; ++k) {
         try {
-          Motion<Space>{any, same, *schemes[i], {row(rows, k), rest}, grid}.require(limit_options ? &*limit_options
-                                                                                                  : nullptr);
+          Motion<Space>{any, same, *schemes[i], {row(rows, k), rest}, grid, stack}.require(pointer_to(limit_options));
         } catch (const ParameterError& wrong) {
           const std::string which = limit_options ? ", q0s[" + std::to_string(k) + "]" : "";
           throw ParameterError("schemes", static_cast<int>(i), wrong.value(),
@@ -75,13 +76,15 @@ py::array not_run(py::ssize_t count) {
 /// Runs schemes[which[i]] from q0s[i] for every i, without the interpreter's lock.
 Chunk sweep_chunk(const Arm& arm, const Path& path, const Schemes& schemes, const std::vector<std::size_t>& which,
                   const ArrayLike& q0s, double dt, double hold, const std::string& task, bool motions,
-                  const py::object& options, const Stop& stop) {
+                  const py::object& options, const py::object& tasks, const Stop& stop) {
   const Array rows = starts(q0s, arm.dof());
   if (static_cast<std::size_t>(rows.shape(0)) != which.size()) {
     throw std::invalid_argument("which and q0s: must have equal lengths");
   }
   const TimeGrid<double> grid(path.duration(), dt, hold);
-  const std::optional<LimitOptions> limit_options = limit_options_of(options, arm, path);
+  const std::optional<LimitOptions> limit_options = limit_options_of(options, arm);
+  const std::optional<StackOptions> stack_options = stack_options_of(tasks, arm, path);
+  const StackOptions* const stack = pointer_to(stack_options);
   py::array_t<Outcome> outcomes(rows.shape(0));
   Outcome* const into = outcomes.mutable_data();
   return arm.visit(task, [&](const auto&, auto space) -> Chunk {
@@ -92,13 +95,12 @@ Chunk sweep_chunk(const Arm& arm, const Path& path, const Schemes& schemes, cons
     for (std::size_t i = 0; i < which.size(); ++i) {
       jobs.push_back({schemes.at(which[i]), row(rows, static_cast<py::ssize_t>(i))});
       if (motions) {
-        jobs.back().output =
-            whole.emplace_back(grid.samples(), arm.dof(), limit_options ? &*limit_options : nullptr).output();
+        jobs.back().output = whole.emplace_back(grid.samples(), arm.dof(), pointer_to(limit_options), stack).output();
       }
     }
     {
       const py::gil_scoped_release others_may_run;
-      sweep(arm, same, grid, jobs, limit_options ? &*limit_options : nullptr, lane_code, stop.flag, into);
+      sweep(arm, same, grid, jobs, pointer_to(limit_options), stack, lane_code, stop.flag, into);
     }
     py::typing::List<Arrays> arrays;
     for (const MotionArrays<Space>& each : whole) arrays.append(each.all());
@@ -138,11 +140,11 @@ void bind_sweep(py::module_& m) {
   m.def("processor_kinds", &processor_kinds);
   m.def("use_lanes", &use_lanes, py::arg("code"));
   m.def("check_sweep", &check_sweep, py::arg("arm"), py::arg("path"), py::arg("schemes"), py::arg("q0s"), py::arg("dt"),
-        py::arg("hold"), py::arg("task"), py::arg("limit_options") = py::none());
+        py::arg("hold"), py::arg("task"), py::arg("limit_options") = py::none(), py::arg("stack_tasks") = py::none());
   m.def("not_run", &not_run, py::arg("count"));
   m.def("sweep_chunk", &sweep_chunk, py::arg("arm"), py::arg("path"), py::arg("schemes"), py::arg("which"),
         py::arg("q0s"), py::arg("dt"), py::arg("hold"), py::arg("task"), py::arg("motions"), py::arg("limit_options"),
-        py::arg("stop"));
+        py::arg("stack_tasks"), py::arg("stop"));
 }
 
 }  // namespace fpbm::bindings

@@ -16,10 +16,11 @@ struct Shape {
   int link = 0;
 };
 
-/// Names and distance of two shapes.
+/// Names, distance and nearest points of two shapes.
 struct PyNearest {
   Clearance<kDynamic>::Names pair;
   double distance;
+  Matrix<2, 3> points;
 };
 
 /// The clearance of an arm from an fpbm_cpp.Clearance or None. Throws std::invalid_argument if the clearance does not

@@ -4,6 +4,7 @@ namespace fpbm::bindings {
 
 template <typename Space>
 RolloutResult<kDynamic> Motion<Space>::simulate(const Output<Space>& output) const {
+  if (stack != nullptr) return simulate_stack(output);
   Recorder<Space> record(output, scheme.level);
   const auto result = std::visit([&](const auto& any) { return rollout(*arm, path, any, start, grid, record); },
                                  scheme.make<Space>(*arm));

@@ -1,9 +1,5 @@
 #pragma once
 
-#include <memory>
-#include <variant>
-#include <vector>
-
 #include "fpbm/any/any_path.hpp"
 #include "fpbm/clearance/clearance.hpp"
 #include "fpbm/realtime/tick.hpp"
@@ -11,30 +7,16 @@
 #include "lane_tracker.hpp"
 #include "recorder.hpp"
 #include "scheme.hpp"
-#include "stack_tasks.hpp"
+#include "stack_path.hpp"
 
 namespace fpbm::bindings {
-
-/// The path of a task of a stack.
-struct TaskPath {
-  std::size_t task;  ///< Index among the plan's tasks.
-  std::variant<AnyPath<Position<3>>, AnyPath<Pose>> path;
-};
-
-/// Several tasks, some of which follow paths.
-struct StackOptions {
-  StackPlan plan;
-  std::vector<TaskPath> paths;  ///< Samples have tip, reference and error of the first path.
-  double duration;              ///< Duration of the longest path [s].
-};
 
 /// Limits of a motion and their options; the length of a tick is the step of the grid.
 struct LimitOptions {
   JointLimits<kDynamic> limits;
   TrackerOptions<> options;
   Clearance<kDynamic> clearance;
-  bool keeps_clear = false;                     ///< Whether a clearance was given.
-  std::shared_ptr<const StackOptions> stack{};  ///< Null if the tip's task is the only task.
+  bool keeps_clear = false;  ///< Whether a clearance was given.
 };
 
 /// One motion along a path.
@@ -45,6 +27,7 @@ struct Motion {
   const Scheme& scheme;
   State<kDynamic> start;
   TimeGrid<double> grid;
+  const StackOptions* stack;  ///< Null if the tip's task is the only task.
 
   /// rollout() of the motion. Throws std::invalid_argument if scheme or start do not fit the arm.
   RolloutResult<kDynamic> simulate(const Output<Space>& output) const;
@@ -59,6 +42,9 @@ struct Motion {
 
   /// Throws as simulate() does, or as track() if there are limits.
   void require(const LimitOptions* limit_options) const;
+
+ private:
+  RolloutResult<kDynamic> simulate_stack(const Output<Space>& output) const;
 };
 
 extern template struct Motion<Position<2>>;

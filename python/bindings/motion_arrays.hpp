@@ -17,7 +17,7 @@ using Arrays = py::typing::Dict<py::str, py::array>;
 /// Arrays for a motion of that many samples of n joints.
 template <typename Space>
 struct MotionArrays {
-  MotionArrays(py::ssize_t samples, py::ssize_t n, const LimitOptions* limit_options)
+  MotionArrays(py::ssize_t samples, py::ssize_t n, const LimitOptions* limit_options, const StackOptions* stack)
       : t(samples),
         q({samples, n}),
         qd({samples, n}),
@@ -25,13 +25,13 @@ struct MotionArrays {
         x(points(samples)),
         x_ref(points(samples)),
         error({samples, py::ssize_t{Space::kRows}}) {
-    if (limit_options == nullptr) return;
-    scale = Array(samples);
-    saturated = py::array_t<bool>({samples, n});
-    if (limit_options->keeps_clear) clearance = Array(samples);
-    if (limit_options->stack == nullptr) return;
-    scales = Array({samples, py::ssize_t{limit_options->stack->plan.levels}});
-    task_errors = Array({samples, py::ssize_t{limit_options->stack->plan.error_size()}});
+    if (limit_options != nullptr) {
+      scale = Array(samples);
+      saturated = py::array_t<bool>({samples, n});
+      if (limit_options->keeps_clear) clearance = Array(samples);
+      if (stack != nullptr) scales = Array({samples, py::ssize_t{stack->plan.levels}});
+    }
+    if (stack != nullptr) task_errors = Array({samples, py::ssize_t{stack->plan.error_size()}});
   }
 
   [[nodiscard]] Output<Space> output() {
@@ -87,11 +87,21 @@ struct MotionArrays {
 };
 
 /// Duration of the path, or of the longest path [s].
-inline double duration_of(const Path& path, const std::optional<LimitOptions>& limit_options) {
-  return limit_options && limit_options->stack ? limit_options->stack->duration : path.duration();
+inline double duration_of(const Path& path, const StackOptions* stack) {
+  return stack != nullptr ? stack->duration : path.duration();
 }
 
 /// Limit options from a LimitOptions of motion/simulation.py, or none.
-std::optional<LimitOptions> limit_options_of(const py::object& given, const Model& model, const Path& path);
+std::optional<LimitOptions> limit_options_of(const py::object& given, const Model& model);
+
+/// The tasks of a stack from a StackTasks of motion/simulation.py, or none. path: the path of the task with the name
+/// given.task.
+std::optional<StackOptions> stack_options_of(const py::object& given, const Model& model, const Path& path);
+
+/// The address of a value, or null.
+template <typename Value>
+[[nodiscard]] const Value* pointer_to(const std::optional<Value>& value) noexcept {
+  return value ? &*value : nullptr;
+}
 
 }  // namespace fpbm::bindings

@@ -77,7 +77,7 @@ StackLoop::Result StackLoop::resolve_measured(const State<kDynamic>& measured, c
 
 PyFollower StackLoop::follow(const Path& path, double ramp, const std::optional<std::string>& name) const {
   const StackTask& task = motion_.plan().follower(name);
-  const Transform<> at = motion_.frame_of(task);
+  const Transform<> at = task.frame_of(tracker().tip());
   if (task.kind == TaskKind::kPose) return {AnyFollower<Pose>(path.as<Pose>(), at, ramp)};
   return {AnyFollower<Position<3>>(path.as<Position<3>>(), at.p, ramp)};
 }
@@ -107,12 +107,12 @@ PyPoints StackLoop::points() const {
   PyPoints points;
   for (const StackTask& task : motion_.plan().tasks) {
     const py::str name(task.name);
-    const Transform<> at = motion_.frame_of(task);
+    const Transform<> at = task.frame_of(tracker().tip());
     if (task.kind == TaskKind::kPosition || task.kind == TaskKind::kCenterOfMass) points[name] = array_of(at.p);
     if (task.kind == TaskKind::kOrientation) points[name] = array_of(at.R);
     if (task.kind == TaskKind::kPose) points[name] = array_of(at);
     if (task.kind == TaskKind::kAxis) points[name] = array_of(column(at.R, 2));
-    if (task.kind == TaskKind::kPosture) points[name] = array_of(motion_.posture_of(task));
+    if (task.kind == TaskKind::kPosture) points[name] = array_of(task.posture_of(tracker().tip()));
   }
   return points;
 }
@@ -122,7 +122,7 @@ Array StackLoop::frame(const std::string& name) const {
   if (task.kind == TaskKind::kPosture) {
     validation::reject("task", " = '" + name + "': postures have no frame: must be a task of a frame");
   }
-  return array_of(motion_.frame_of(task));
+  return array_of(task.frame_of(tracker().tip()));
 }
 
 Eigen::VectorXd StackLoop::scales(const Result& tick) const {
@@ -133,7 +133,7 @@ Eigen::VectorXd StackLoop::error(const Result& tick) const {
   Eigen::VectorXd all(motion_.plan().error_size());
   Eigen::Index row = 0;
   for (const StackTask& task : motion_.plan().tasks) {
-    all.segment(row, task.size) = StackMotion::error_of(task, tick);
+    all.segment(row, task.size) = task.error_of(tick.error);
     row += task.size;
   }
   return all;

@@ -16,45 +16,18 @@ StackMotion::StackMotion(const StackPlan& plan, const Scheme& scheme, const Stat
           make_stack_tracker(scheme, {plan_.tree, plan_.at(scheme.level), start, options, limits, qdd0, clearance})),
       held_(Reference<Space>::hold(tracker_->tip())) {
   for (std::size_t i = 0; i < plan_.tasks.size(); ++i) {
-    if (plan_.targets[i]) put(plan_.tasks[i], *plan_.targets[i], held_);
+    if (plan_.targets[i]) plan_.tasks[i].put(*plan_.targets[i], held_);
   }
-}
-
-void StackMotion::put(const StackTask& task, const StackTarget& target, Reference<Space>& to) const noexcept {
-  task.at_place([&](auto space, auto i, int row) noexcept {
-    if constexpr (std::is_same_v<decltype(space), FrameSpace>) {
-      std::get<decltype(i)::value>(to.x).at = target.at;
-    } else {
-      for (int j = 0; j < task.size; ++j) std::get<decltype(i)::value>(to.x)(j) = target.q(j);
-    }
-    for (int j = 0; j < task.size; ++j) {
-      to.xd(row + task.shift() + j) = target.xd(j);
-      to.xdd(row + task.shift() + j) = target.xdd(j);
-    }
-  });
 }
 
 void StackMotion::put(const StackTask& task, const Source& source, double seconds,
                       Reference<Space>& to) const noexcept {
-  StackTarget target;
-  std::visit(
-      [&](const auto* each) noexcept {
-        const auto reference = each->ahead(seconds);
-        if constexpr (std::is_same_v<std::decay_t<decltype(reference)>, Reference<Pose>>) {
-          target.at = reference.x;
-        } else {
-          target.at.p = reference.x;
-        }
-        target.xd = reference.xd;
-        target.xdd = reference.xdd;
-      },
-      source);
-  put(task, target, to);
+  std::visit([&](const auto* each) noexcept { task.put(target_at(each->ahead(seconds)), to); }, source);
 }
 
 void StackMotion::aim(const Targets& targets) noexcept {
   held_ = Reference<Space>::hold(held_.x);
-  for (const auto& [task, target] : targets) put(*task, target, held_);
+  for (const auto& [task, target] : targets) task->put(target, held_);
 }
 
 StackMotion::Result StackMotion::tick(const Sources& sources) noexcept {
@@ -99,7 +72,7 @@ bool StackMotion::reorder(const std::array<int, AnyStack::kLevels>& order) noexc
     const StackTarget target = target_of(task);
     const auto level = std::find(order.begin(), order.end(), task.index / kPlaces) - order.begin();
     task.index = static_cast<int>(level) * kPlaces + task.index % kPlaces;
-    put(task, target, held);
+    task.put(target, held);
   }
   held_ = held;
   return true;
@@ -113,34 +86,6 @@ void StackMotion::stop() noexcept {
 void StackMotion::resume() noexcept {
   stopping_ = false;
   tracker_->resume();
-}
-
-Transform<> StackMotion::frame_of(const StackTask& task) const noexcept {
-  const StackTracker::Point tip = tracker_->tip();
-  Transform<> at;
-  task.at_place([&](auto space, auto i, int) noexcept {
-    if constexpr (std::is_same_v<decltype(space), FrameSpace>) at = std::get<decltype(i)::value>(tip).at;
-  });
-  return at;
-}
-
-JointVector StackMotion::posture_of(const StackTask& task) const noexcept {
-  const StackTracker::Point tip = tracker_->tip();
-  JointVector q(task.size);
-  task.at_place([&](auto space, auto i, int) noexcept {
-    if constexpr (!std::is_same_v<decltype(space), FrameSpace>) {
-      for (int j = 0; j < task.size; ++j) q(j) = std::get<decltype(i)::value>(tip)(j);
-    }
-  });
-  return q;
-}
-
-JointVector StackMotion::error_of(const StackTask& task, const Result& tick) noexcept {
-  JointVector error(task.size);
-  task.at_place([&](auto, auto, int row) noexcept {
-    for (int j = 0; j < task.size; ++j) error(j) = tick.error(row + task.shift() + j);
-  });
-  return error;
 }
 
 }  // namespace fpbm::bindings

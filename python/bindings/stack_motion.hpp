@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "stack_tasks.hpp"
+#include "stack_path.hpp"
 #include "stack_tracker.hpp"
 #include "tracker.hpp"
 
@@ -44,16 +44,9 @@ class StackMotion {
 
   [[nodiscard]] const StackPlan& plan() const noexcept { return plan_; }
   [[nodiscard]] StackTracker& tracker() const noexcept { return *tracker_; }
-  /// The frame of a task; for an axis task, z is the axis.
-  [[nodiscard]] Transform<> frame_of(const StackTask& task) const noexcept;
-  /// Positions of the joints of a posture.
-  [[nodiscard]] JointVector posture_of(const StackTask& task) const noexcept;
-  /// The entries of a task's error in a tick.
-  [[nodiscard]] static JointVector error_of(const StackTask& task, const Result& tick) noexcept;
 
  private:
   [[nodiscard]] StackTarget target_of(const StackTask& task) const noexcept;
-  void put(const StackTask& task, const StackTarget& target, Reference<Space>& to) const noexcept;
   void put(const StackTask& task, const Source& source, double seconds, Reference<Space>& to) const noexcept;
 
   StackPlan plan_;

@@ -6,6 +6,7 @@
 
 #include "fpbm/any/any_stack.hpp"
 #include "fpbm/core/level.hpp"
+#include "fpbm/task/reference.hpp"
 #include "model.hpp"
 
 namespace fpbm::bindings {
@@ -17,8 +18,18 @@ struct Task {
   TaskKind kind;
 };
 
+/// A reference of one task.
+struct StackTarget {
+  Transform<> at;
+  Vector<kDynamic> q;
+  Vector<kDynamic> xd;
+  Vector<kDynamic> xdd;
+};
+
 /// A task of a stack in Python.
 struct StackTask {
+  using Space = AnyStack::Space;
+
   std::string name;
   TaskKind kind;
   int index;  ///< Index among AnyStack's tasks.
@@ -37,14 +48,15 @@ struct StackTask {
       if (static_cast<int>(decltype(i)::value) == index) f(space, i, row);
     });
   }
-};
 
-/// A reference of one task.
-struct StackTarget {
-  Transform<> at;
-  Vector<kDynamic> q;
-  Vector<kDynamic> xd;
-  Vector<kDynamic> xdd;
+  /// Sets the reference of the task in the reference of the stack.
+  void put(const StackTarget& target, Reference<Space>& to) const noexcept;
+  /// The frame of the task at a point of the stack; for an axis task, z is the axis.
+  [[nodiscard]] Transform<> frame_of(const AnyStack::Point& point) const noexcept;
+  /// Positions of the joints of a posture.
+  [[nodiscard]] JointVector posture_of(const AnyStack::Point& point) const noexcept;
+  /// The entries of the task in the error of the stack.
+  [[nodiscard]] JointVector error_of(const Vector<Space::kRows>& error) const noexcept;
 };
 
 /// An fpbm_cpp.Stack for a robot.

@@ -1,6 +1,7 @@
 #include "stack_tracker.hpp"
 
 #include <stdexcept>
+#include <type_traits>
 
 #include "fpbm/clearance/guard.hpp"
 #include "fpbm/realtime/stack_tracker.hpp"
@@ -43,20 +44,35 @@ class StackTrackerOf final : public StackTracker {
   Tracker<RobotTasks<Robot<kDynamic>, AnyStack>, Space, ByLevels<Scheme_, AnyStack>, TrackerGuard> tracker_;
 };
 
-template <Level kLevel>
-std::unique_ptr<StackTracker> tracker_at(const Scheme& scheme, const StackStart& from) {
-  const auto law = scheme.law<kLevel>(any_weights(scheme, from.start.q.size()), from.limits);
-  return std::make_unique<StackTrackerOf<std::decay_t<decltype(law)>>>(law, from);
+/// Calls f with the scheme as a type of the library, for joints with the given limits.
+template <typename F>
+auto with_law(const Scheme& scheme, const JointLimits<kDynamic>& limits, F&& f) {
+  if (!scheme.is_plain()) {
+    validation::reject("manipulability_gain", " needs a single task: must not be given with a stack");
+  }
+  const AnyWeights W = any_weights(scheme, limits.lower.size());
+  return scheme.level == Level::kVelocity ? f(scheme.law<Level::kVelocity>(W, limits))
+                                          : f(scheme.law<Level::kAcceleration>(W, limits));
 }
 
 }  // namespace
 
 std::unique_ptr<StackTracker> make_stack_tracker(const Scheme& scheme, const StackStart& from) {
-  if (!scheme.is_plain()) {
-    validation::reject("manipulability_gain", " needs a single task: must not be given with a stack");
-  }
-  return scheme.level == Level::kVelocity ? tracker_at<Level::kVelocity>(scheme, from)
-                                          : tracker_at<Level::kAcceleration>(scheme, from);
+  return with_law(scheme, from.limits, [&](const auto& law) -> std::unique_ptr<StackTracker> {
+    return std::make_unique<StackTrackerOf<std::decay_t<decltype(law)>>>(law, from);
+  });
+}
+
+RolloutResult<kDynamic> rollout_of_stack(const StackPlan& plan, const StackPath& path, const Scheme& scheme,
+                                         const State<kDynamic>& start, const TimeGrid<double>& grid,
+                                         const StackRecorder& record) {
+  const Robot<kDynamic> robot(plan.tree);
+  return with_law(scheme, robot.limits(), [&](const auto& law) {
+    const AnyStack& stack = plan.at(scheme.level);
+    require_stack_gains(law, stack, TickOfGains<double>{grid.dt(), 0.0});
+    const RobotTasks<Robot<kDynamic>, AnyStack> tasks(robot, stack);
+    return rollout(tasks, path, ByLevels<std::decay_t<decltype(law)>, AnyStack>(law), start, grid, record);
+  });
 }
 
 }  // namespace fpbm::bindings

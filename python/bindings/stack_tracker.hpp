@@ -1,13 +1,16 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
 
 #include "fpbm/any/any_stack.hpp"
 #include "fpbm/clearance/clearance.hpp"
 #include "fpbm/realtime/stack_tick.hpp"
 #include "fpbm/realtime/tick_references.hpp"
+#include "fpbm/sim/rollout.hpp"
 #include "scheme.hpp"
+#include "stack_path.hpp"
 
 namespace fpbm::bindings {
 
@@ -52,5 +55,13 @@ struct StackStart {
 /// The tracker. Throws std::invalid_argument as fpbm::stack_tracker() does, and if an objective of the scheme needs
 /// a single task.
 std::unique_ptr<StackTracker> make_stack_tracker(const Scheme& scheme, const StackStart& from);
+
+/// Recorder of a motion of a stack.
+using StackRecorder = std::function<bool(const Sample<AnyStack::Space, kDynamic>&)>;
+
+/// fpbm::rollout() of a stack. Throws std::invalid_argument as make_stack_tracker() does.
+RolloutResult<kDynamic> rollout_of_stack(const StackPlan& plan, const StackPath& path, const Scheme& scheme,
+                                         const State<kDynamic>& start, const TimeGrid<double>& grid,
+                                         const StackRecorder& record);
 
 }  // namespace fpbm::bindings

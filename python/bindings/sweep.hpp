@@ -24,8 +24,9 @@ struct Job {
 template <typename Space>
 class Runner {
  public:
-  Runner(const Arm& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid, const std::atomic<bool>& stop)
-      : arm_(arm), any_(std::get<AnyArmFor<Space>>(arm.any)), path_(path), grid_(grid), stop_(stop) {}
+  Runner(const Arm& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid, const StackOptions* stack,
+         const std::atomic<bool>& stop)
+      : arm_(arm), any_(std::get<AnyArmFor<Space>>(arm.any)), path_(path), grid_(grid), stack_(stack), stop_(stop) {}
 
   [[nodiscard]] bool stopped() const noexcept { return stop_.load(std::memory_order_relaxed); }
 
@@ -80,13 +81,14 @@ class Runner {
   static constexpr int kDof = ArmInLanes<Space>::kDof;
 
   [[nodiscard]] Motion<Space> motion(const Job<Space>& job) const {
-    return {&any_, path_, *job.scheme, {job.q0, JointVector::Zero(job.q0.size())}, grid_};
+    return {&any_, path_, *job.scheme, {job.q0, JointVector::Zero(job.q0.size())}, grid_, stack_};
   }
 
   const Arm& arm_;
   const AnyArmFor<Space>& any_;
   const AnyPath<Space>& path_;
   const TimeGrid<double>& grid_;
+  const StackOptions* stack_;
   const std::atomic<bool>& stop_;
 };
 
@@ -120,13 +122,12 @@ template <typename Space>
 /// marked as not run. Throws std::invalid_argument if a scheme, a start or the limits do not fit the arm.
 template <typename Space>
 void sweep(const Arm& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid,
-           const std::vector<Job<Space>>& jobs, const LimitOptions* limit_options, const LaneCode* code,
-           const std::atomic<bool>& stop, Outcome* outcomes) {
-  const Runner<Space> runner(arm, path, grid, stop);
+           const std::vector<Job<Space>>& jobs, const LimitOptions* limit_options, const StackOptions* stack,
+           const LaneCode* code, const std::atomic<bool>& stop, Outcome* outcomes) {
+  const Runner<Space> runner(arm, path, grid, stack, stop);
   std::fill_n(outcomes, jobs.size(), Outcome::of_nothing());
   if constexpr (!std::is_same_v<Space, PlanarPose>) {
-    const bool of_a_stack = limit_options != nullptr && limit_options->stack != nullptr;
-    if (code != nullptr && runs_in_lanes(arm) && !of_a_stack) {
+    if (code != nullptr && runs_in_lanes(arm) && stack == nullptr) {
       for (const Level level : {Level::kVelocity, Level::kAcceleration}) {
         runner.in_lanes(jobs, side_by_side(jobs, level), limit_options, static_cast<std::size_t>(code->lanes),
                         std::get<RunInLanes<Space>>(code->run), outcomes);

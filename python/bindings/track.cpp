@@ -4,6 +4,9 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
+#include <type_traits>
+#include <variant>
+#include <vector>
 
 #include "motion.hpp"
 #include "stack_motion.hpp"
@@ -28,12 +31,9 @@ std::unique_ptr<AnyTracker<Space>> tracker_of(const Motion<Space>& motion, const
 
 template <typename Space>
 StackMotion stack_motion_of(const Motion<Space>& motion, const LimitOptions& limit_options) {
-  return {limit_options.stack->plan,
-          motion.scheme,
-          motion.start,
-          options_of(motion, limit_options),
-          limit_options.limits,
-          JointVector::Zero(motion.start.q.size()),
+  return {motion.stack->plan,     motion.scheme,
+          motion.start,           options_of(motion, limit_options),
+          limit_options.limits,   JointVector::Zero(motion.start.q.size()),
           limit_options.clearance};
 }
 
@@ -72,7 +72,7 @@ class Followers {
  public:
   Followers(const StackMotion& tasks, const std::vector<TaskPath>& paths) {
     for (const TaskPath& task_path : paths) {
-      const Transform<> at = tasks.frame_of(tasks.plan().tasks[task_path.task]);
+      const Transform<> at = tasks.plan().tasks[task_path.task].frame_of(tasks.tracker().tip());
       std::visit(
           [&](const auto& path) {
             using Space = typename std::decay_t<decltype(path)>::Space;
@@ -99,43 +99,84 @@ class Followers {
   std::vector<std::variant<AnyFollower<Position<3>>, AnyFollower<Pose>>> each_;
 };
 
-/// fpbm::track() of a stack. Tip, reference and error of a sample belong to the task that follows the first path. J of
-/// a sample, for summaries, is the Jacobian of the arm's tip.
+/// Recorder of a motion of a stack. Tip, reference and error of a sample belong to the task that follows the first
+/// path. J of a sample, for summaries, is the Jacobian of the arm's tip.
+template <typename Space>
+class TaskRecorder {
+ public:
+  TaskRecorder(const Motion<Space>& motion, const Output<Space>& output, Level level)
+      : motion_(motion), output_(output), record_(output, level) {}
+
+  /// point: of the stack. reference: frame of the task that follows the first path. error: of the stack. tick: result
+  /// of the tick that starts at the sample, if the motion has ticks.
+  template <typename... AnyTick>
+  bool operator()(int k, const State<kDynamic>& state, const JointVector& qdd, const AnyStack::Point& point,
+                  const Transform<>& reference, const Vector<AnyStack::Space::kRows>& error, const AnyTick&... tick) {
+    const StackPlan& plan = motion_.stack->plan;
+    const StackTask& followed = plan.tasks[motion_.stack->paths.front().task];
+    if (output_.summary != nullptr) motion_.arm->kinematics(state.q, kinematics_);
+    if (output_.errors != nullptr) {
+      double* row = output_.errors + static_cast<std::ptrdiff_t>(k) * plan.error_size();
+      for (const StackTask& task : plan.tasks) {
+        const JointVector own = task.error_of(error);
+        row = std::copy_n(own.data(), own.size(), row);
+      }
+    }
+    return record_(
+        {k, motion_.grid.time(k), state.q, state.qd, qdd, point_of<Space>(followed.frame_of(point)),
+         Reference<Space>::hold(point_of<Space>(reference)), rows_of<Space>(followed.error_of(error)), kinematics_.J},
+        tick...);
+  }
+
+  void finish() const noexcept { record_.finish(); }
+
+ private:
+  const Motion<Space>& motion_;
+  const Output<Space>& output_;
+  Recorder<Space> record_;
+  Kinematics<Space, kDynamic> kinematics_;
+};
+
+/// fpbm::track() of a stack.
 template <typename Space>
 RolloutResult<kDynamic> track_stack(const Motion<Space>& motion, const LimitOptions& limit_options,
                                     const Output<Space>& output) {
   StackMotion tasks = stack_motion_of(motion, limit_options);
   StackTracker& tracker = tasks.tracker();
   const StackPlan& plan = tasks.plan();
-  const std::vector<TaskPath>& paths = limit_options.stack->paths;
-  const StackTask& task_path = plan.tasks[paths.front().task];
+  const std::vector<TaskPath>& paths = motion.stack->paths;
   Followers followers(tasks, paths);
   const StackMotion::Sources sources = followers.sources(plan, paths);
-  Recorder<Space> record(output, Level::kAcceleration);
+  TaskRecorder<Space> record(motion, output, Level::kAcceleration);
   RolloutResult<kDynamic> result{Status::kOk, 0.0, tracker.state(), 0};
-  Kinematics<Space, kDynamic> kinematics;
   auto placed = tracker.clearance().placement();
   for (int k = 0; k < motion.grid.samples(); ++k) {
     const State<kDynamic> state = tracker.state();
-    const auto tip = point_of<Space>(tasks.frame_of(task_path));
-    const auto reference = Reference<Space>::hold(point_of<Space>(followers.first()));
-    if (output.summary != nullptr) motion.arm->kinematics(state.q, kinematics);
+    const StackTracker::Point tip = tracker.tip();
+    const Transform<> reference = followers.first();
     if (output.clearance != nullptr) {
       output.clearance[k] = tracker.clearance().nearest_pair(state.q, placed).second;
     }
     const StackMotion::Result tick = tasks.tick(sources);
     result = {worse(result.status, tick.status), motion.grid.time(k), state, k + 1};
     if (output.scales != nullptr) std::copy_n(tick.scales.data(), plan.levels, output.scales + k * plan.levels);
-    if (output.errors != nullptr) {
-      double* row = output.errors + static_cast<std::ptrdiff_t>(k) * plan.error_size();
-      for (const StackTask& task : plan.tasks) {
-        const JointVector error = StackMotion::error_of(task, tick);
-        row = std::copy_n(error.data(), error.size(), row);
-      }
-    }
-    const Vector<Space::kRows> error = rows_of<Space>(StackMotion::error_of(task_path, tick));
-    if (!record({k, result.time, state.q, state.qd, tick.qdd, tip, reference, error, kinematics.J}, tick)) break;
+    if (!record(k, state, tick.qdd, tip, reference, tick.error, tick)) break;
   }
+  record.finish();
+  return result;
+}
+
+/// fpbm::rollout() of a stack.
+template <typename Space>
+RolloutResult<kDynamic> rollout_with_stack(const Motion<Space>& motion, const Output<Space>& output) {
+  const StackOptions& stack = *motion.stack;
+  const StackTask& followed = stack.plan.tasks[stack.paths.front().task];
+  TaskRecorder<Space> record(motion, output, motion.scheme.level);
+  const auto result =
+      rollout_of_stack(stack.plan, {stack}, motion.scheme, motion.start, motion.grid, [&](const auto& sample) {
+        return record(sample.index, {sample.q, sample.qd}, sample.qdd, sample.tip,
+                      followed.frame_of(sample.reference.x), sample.error);
+      });
   record.finish();
   return result;
 }
@@ -144,9 +185,7 @@ RolloutResult<kDynamic> track_stack(const Motion<Space>& motion, const LimitOpti
 
 template <typename Space>
 RolloutResult<kDynamic> Motion<Space>::track(const LimitOptions& limit_options, const Output<Space>& output) const {
-  if (limit_options.stack != nullptr) {
-    return track_stack(*this, limit_options, output);
-  }
+  if (stack != nullptr) return track_stack(*this, limit_options, output);
   const auto tracker = tracker_of(*this, limit_options);
   Recorder<Space> record(output, Level::kAcceleration);
   AnyFollower<Space> follower(path, tracker->tip());
@@ -164,6 +203,11 @@ RolloutResult<kDynamic> Motion<Space>::track(const LimitOptions& limit_options, 
 }
 
 template <typename Space>
+RolloutResult<kDynamic> Motion<Space>::simulate_stack(const Output<Space>& output) const {
+  return rollout_with_stack(*this, output);
+}
+
+template <typename Space>
 template <int N>
 LaneTracker<Space, N> Motion<Space>::tracker(const LimitOptions& limit_options) const {
   return {tracker_of(*this, limit_options), continuous_joints(*arm, limit_options.limits)};
@@ -171,10 +215,12 @@ LaneTracker<Space, N> Motion<Space>::tracker(const LimitOptions& limit_options) 
 
 template <typename Space>
 void Motion<Space>::require(const LimitOptions* limit_options) const {
-  if (limit_options != nullptr && limit_options->stack != nullptr) {
+  if (limit_options != nullptr && stack != nullptr) {
     (void)stack_motion_of(*this, *limit_options);
   } else if (limit_options != nullptr) {
     (void)tracker_of(*this, *limit_options);
+  } else if (stack != nullptr) {
+    (void)rollout_of_stack(stack->plan, {*stack}, scheme, start, grid, [](const auto&) { return false; });
   } else {
     (void)scheme.make<Space>(*arm);
   }

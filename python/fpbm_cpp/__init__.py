@@ -5,7 +5,7 @@ motion at joint-velocity level (MVN, WMVN) or at joint-acceleration level (MAN, 
 are radians, metres and seconds. Numbers in brackets are the equations of Wang et al., IEEE Access 2019.
 """
 
-from . import arms, paths, robots, schemes, tasks
+from . import arms, joints, paths, robots, schemes, tasks
 from ._core import (
     MAX_DOF,
     Kinematics,
@@ -27,27 +27,28 @@ from ._core import (
 from .arms import *
 from .capsule import Capsule
 from .clearance import Clearance
-from .errors import ParameterError, ResolutionError, SweepInterrupted, TuneInterrupted, UrdfWarning
+from .errors import ParameterError, ResolutionError, UrdfWarning
 from .io.run_file import load
+from .joints import *
 from .motion.comparison import Comparison, comparison
-from .motion.lanes import LANES
-from .motion.run import Run, RunStatus
+from .motion.run import Run
+from .motion.run_data import RunStatus
 from .motion.simulation import simulate, track
-from .motion.sweeping import Sweep, sweep
+from .motion.sweeping import Sweep, SweepInterrupted, sweep
 from .obstacle import Cuboid, HalfSpace
 from .paths import *
 from .robots import *
 from .schemes import *
 from .task_bounds import TaskBounds
 from .tasks import *
-from .tuning import Tuning, tune
+from .tuning import TuneInterrupted, Tuning, tune
 from .viewer import servo, view
 
-__all__ = ["LANES", "Run", "RunStatus", "Sweep", "Tuning", "load", "simulate", "sweep", "track", "tune"]
+__all__ = ["Run", "RunStatus", "Sweep", "Tuning", "load", "simulate", "sweep", "track", "tune"]
 __all__ += ["Comparison", "comparison", "servo", "view"]
 __all__ += ["Capsule", "Clearance", "Cuboid", "HalfSpace", "Nearest"]
 __all__ += ["Kinematics", "Limiter", "PathFollower", "SaturatedMotion", "Status", "TargetFilter", "Tick"]
 __all__ += ["SaturatedLevels", "TaskBounds", "Tracker", "failed", "saturate"]
 __all__ += ["MAX_DOF", "ParameterError", "ResolutionError", "SweepInterrupted", "TuneInterrupted", "UrdfWarning"]
 __all__ += ["__version__", "rotation", "rotation_vector"]
-__all__ += arms.__all__ + paths.__all__ + robots.__all__ + schemes.__all__ + tasks.__all__
+__all__ += arms.__all__ + joints.__all__ + paths.__all__ + robots.__all__ + schemes.__all__ + tasks.__all__

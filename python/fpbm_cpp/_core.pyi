@@ -40,8 +40,10 @@ __all__: list[str] = [
     "failed",
     "in_plane",
     "line",
+    "link_frames",
     "lissajous",
     "message",
+    "named_frames",
     "not_run",
     "preset",
     "preset_capsules",
@@ -323,6 +325,11 @@ class Nearest:
     def pair(self) -> tuple[str, str]:
         """
         Names: of a capsule of the arm, and of the other shape.
+        """
+    @property
+    def points(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Nearest points on the surfaces of both shapes in the base frame, shape (2, 3) [m].
         """
 
 class Clearance:
@@ -838,6 +845,7 @@ def check_sweep(
     hold: typing.SupportsFloat | typing.SupportsIndex,
     task: str,
     limit_options: typing.Any = None,
+    stack_tasks: typing.Any = None,
 ) -> tuple[numpy.typing.NDArray[numpy.float64], int]: ...
 def circle(
     radius: typing.SupportsFloat | typing.SupportsIndex,
@@ -856,6 +864,11 @@ def in_plane(path: Path, axes: numpy.typing.ArrayLike) -> Path: ...
 def line(
     displacement: numpy.typing.ArrayLike, duration: typing.SupportsFloat | typing.SupportsIndex, time_law: str
 ) -> Path: ...
+def link_frames(model: Model, q: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Frames of the base and of all links in postures q, shape (K, links, 4, 4).
+    """
+
 def lissajous(
     amplitude: numpy.typing.ArrayLike,
     duration: typing.SupportsFloat | typing.SupportsIndex,
@@ -866,6 +879,11 @@ def lissajous(
 def message(status: Status) -> str:
     """
     Description of the status in one sentence.
+    """
+
+def named_frames(model: Model, q: numpy.typing.ArrayLike, frame: str) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    A frame in postures q, shape (K, 1, 4, 4).
     """
 
 def not_run(count: typing.SupportsInt | typing.SupportsIndex) -> numpy.ndarray: ...
@@ -895,6 +913,7 @@ def rollout(
     hold: typing.SupportsFloat | typing.SupportsIndex,
     task: str,
     limit_options: typing.Any = None,
+    stack_tasks: typing.Any = None,
 ) -> tuple[Status, float, int, dict[str, numpy.ndarray]]: ...
 def rotation(r: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
     """
@@ -957,6 +976,7 @@ def sweep_chunk(
     task: str,
     motions: bool,
     limit_options: typing.Any,
+    stack_tasks: typing.Any,
     stop: Stop,
 ) -> tuple[numpy.ndarray, list[dict[str, numpy.ndarray]]]: ...
 def tricuspid(

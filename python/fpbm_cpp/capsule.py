@@ -8,6 +8,8 @@ from ._core import Shape
 from ._types import ArrayField
 from .parameter import NOT_NEGATIVE, Data, data, parameter
 
+MARGIN = 0.01  # Default of the least distance between two shapes [m].
+
 
 @data
 class Capsule(Data, Shape):

@@ -13,14 +13,16 @@ from numpy.typing import ArrayLike
 from ._core import Clearance as CoreClearance
 from ._core import Nearest, preset_capsules
 from ._types import Array
-from .arms import IDENTITY, Arm, Joint, JointLimits, SerialArm
-from .capsule import Capsule
+from .arms import Arm, SerialArm
+from .capsule import MARGIN, Capsule
 from .errors import ParameterError, require, suggestion, wrong
+from .joints import IDENTITY, Joint, JointLimits
 from .obstacle import OBSTACLES, Obstacle
-from .parameter import NOT_NEGATIVE, POSITIVE, Data, data, parameter
+from .parameter import NOT_NEGATIVE, POSITIVE, Data, data, from_file, parameter
 from .robots import PLACE, Robot
+from .urdf.capsules import capsules_of, read_joints
+from .urdf.srdf import read_disabled_pairs, read_group_states
 
-MARGIN = 0.01
 PLANAR_BASE = {"base_x", "base_y", "base_yaw"}  # Joints of Robot.from_urdf(base="planar"); not in SRDF files.
 
 
@@ -168,20 +170,11 @@ class Clearance(Data):
         Raises ParameterError if postures have a wrong shape or are not finite, or an argument is for another kind of
         robot; ValueError if a file is not valid; OSError if a file cannot be read.
         """
-        from .io.capsules import capsules_of
-        from .io.srdf import read_disabled_pairs
-        from .io.urdf import read_places
-        from .io.urdf_tree import read_tree
-
         cls([], obstacles, margin=margin)  # Check these arguments before the slow fit.
         pairs = [] if srdf is None else read_disabled_pairs(srdf)
         if tips is not None:
             tips = [tips] if isinstance(tips, str) else list(tips)
-        if tip is None:
-            robot = Robot(**read_tree(path, base=base, locked=locked, tips=tips, limits=limits, notes=[]))
-            joints = [each.joint for each in robot.joints]
-        else:
-            joints = list(SerialArm(*read_places(path, tip, base, limits)[:2]).joints)
+        joints = [each.joint for each in read_joints(path, tip, base, locked, tips, limits)[0]]
         capsules = capsules_of(
             path,
             tip,
@@ -224,9 +217,6 @@ class Clearance(Data):
 
 def _postures(joints: Sequence[Joint], given: ArrayLike | None, srdf: str | os.PathLike[str] | None) -> Array | None:
     """Positions (k, N) of all joints in the given postures or the SRDF file's group states; None without postures."""
-    from .io.capsule_gaps import follow
-    from .io.srdf import read_group_states
-
     free = [i for i, joint in enumerate(joints) if joint.mimic is None]
     if given is not None:
         try:
@@ -244,7 +234,7 @@ def _postures(joints: Sequence[Joint], given: ArrayLike | None, srdf: str | os.P
             return None
     positions = np.zeros((len(q), len(joints)))
     positions[:, free] = q
-    return follow(joints, positions)
+    return positions
 
 
 def _is_whole(state: Mapping[str, float], names: Sequence[str]) -> bool:
@@ -259,32 +249,8 @@ def _require(name: str, shapes: Iterable[Any], kinds: tuple[Any, ...], demand: s
         require(name, each, kinds, demand, index=i)
 
 
-def _from_urdf(
-    file: str,
-    tip: str | None = None,
-    base: str | None = None,
-    *,
-    locked: Mapping[str, float] | None = None,
-    tips: Sequence[str] | None = None,
-    srdf: str | None = None,
-    obstacles: Sequence[Obstacle] = (),
-    margin: float = MARGIN,
-    per_link: int = 2,
-    postures: ArrayLike | None = None,
-) -> Clearance:
-    return Clearance.from_urdf(
-        file,
-        tip,
-        base,
-        locked=locked,
-        tips=tips,
-        srdf=srdf,
-        obstacles=obstacles,
-        margin=margin,
-        per_link=per_link,
-        postures=postures,
-    )
-
-
 # Constructors of clearances, by the kind in a table.
-CLEARANCES: dict[str, Callable[..., Clearance]] = {Clearance.kind: Clearance, "urdf": _from_urdf}
+CLEARANCES: dict[str, Callable[..., Clearance]] = {
+    Clearance.kind: Clearance,
+    "urdf": from_file(Clearance.from_urdf, "allowed", "limits"),
+}

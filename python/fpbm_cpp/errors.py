@@ -5,14 +5,9 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ._core import Status, advice, message
-
-if TYPE_CHECKING:
-    from .motion.run import Run
-    from .motion.sweeping import Sweep
-    from .tuning.result import Tuning
 
 
 class ParameterError(ValueError):
@@ -81,26 +76,10 @@ class UrdfWarning(UserWarning):
 class ResolutionError(RuntimeError):
     """The motion cannot be resolved: singular posture, unreachable target, or a number that is not finite.
 
-    status: the cause. run: the motion before the error, if a simulation stopped.
+    status: the cause. run: the Run before the error, if a simulation stopped.
     """
 
-    def __init__(self, status: Status, text: str | None = None, run: Run | None = None) -> None:
+    def __init__(self, status: Status, text: str | None = None, run: Any = None) -> None:
         super().__init__(text or f"{message(status)}. {advice(status)}")
         self.status = status
         self.run = run
-
-
-class SweepInterrupted(KeyboardInterrupt):
-    """A sweep was stopped by Ctrl-C. sweep: the result with the finished motions, which sweep.done marks."""
-
-    def __init__(self, sweep: Sweep) -> None:
-        super().__init__(f"interrupted after {int(sweep.done.sum())} of {sweep.done.size} motions")
-        self.sweep = sweep
-
-
-class TuneInterrupted(KeyboardInterrupt):
-    """A tuning was stopped by Ctrl-C. tuning: the result so far; None if no feasible scheme was found."""
-
-    def __init__(self, tuning: Tuning | None, tried: int) -> None:
-        super().__init__(f"interrupted after {tried} schemes")
-        self.tuning = tuning

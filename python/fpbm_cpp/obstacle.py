@@ -8,8 +8,8 @@ from typing import ClassVar
 
 from ._core import Shape
 from ._types import ArrayField
-from .arms import FRAME
 from .capsule import Capsule
+from .joints import FRAME
 from .parameter import NOT_NEGATIVE, Data, data, parameter
 
 NAME = "Name in errors and in Nearest; if empty, 'obstacle_1', 'obstacle_2' and so on."

@@ -155,6 +155,18 @@ def _parameters(maker: Any) -> dict[str, Parameter]:
 parameters: Callable[[Callable[..., Any]], dict[str, Parameter]] = cache(_parameters)
 
 
+def from_file(make: Callable[..., Any], *without: str) -> Callable[..., Any]:
+    """A constructor for tables: its first argument is named `file`, and it has no arguments with these names."""
+
+    def made(file: str, **options: Any) -> Any:
+        return make(file, **options)
+
+    first, *others = inspect.signature(make).parameters.values()
+    kept = [first.replace(name="file"), *(each for each in others if each.name not in without)]
+    made.__signature__ = inspect.Signature(kept)  # type: ignore[attr-defined]
+    return made
+
+
 class Data:
     """A frozen data class that can be pickled. repr() is a constructor call; objects with equal repr() are equal."""
 

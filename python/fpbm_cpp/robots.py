@@ -13,38 +13,15 @@ from numpy.typing import ArrayLike
 from ._core import PRESETS, ROBOT_PRESETS, robot_preset
 from ._core import Robot as CoreRobot
 from ._types import ArrayField
-from .arms import ARMS, IDENTITY, Arm, Joint, JointLimits, SerialArm
+from .arms import ARMS, Arm, SerialArm
 from .errors import not_one_of, require, wrong
-from .parameter import NOT_NEGATIVE, Data, Parameter, data, parameter
-from .shown import joint_table
+from .joints import CENTER, IDENTITY, Joint, JointLimits, NamedFrame, TreeJoint, joint_table
+from .parameter import NOT_NEGATIVE, Data, Parameter, data, from_file, parameter
+from .urdf.tree import read_tree
 
-__all__ = ["NamedFrame", "Robot", "TreeJoint"]
+__all__ = ["Robot"]
 
-CENTER = Parameter(shape="(3,)", unit="m")
 PLACE = Parameter(shape="(4, 4)", unit="m")
-
-
-@data
-class TreeJoint(Data):
-    """A joint of a tree, its parent link, and the mass of its child link.
-
-    Link 0 is the base. Link i + 1 is the child of joint i; its frame is the frame of joint i after the joint's motion.
-    """
-
-    joint: Joint = parameter("The joint, placed in the frame of the parent link.")
-    parent: int = parameter("Number of the parent link, at most the index of the joint.", default=0)
-    _: KW_ONLY
-    mass: float = parameter("Mass of the child link.", NOT_NEGATIVE, default=0.0, unit="kg")
-    center: ArrayField = parameter("Centre of mass of the child link, in its frame.", CENTER, default=(0, 0, 0))
-
-
-@data
-class NamedFrame(Data):
-    """A frame of a link."""
-
-    name: str = parameter("Name of the frame.")
-    link: int = parameter("Number of the link, as in TreeJoint.", default=0)
-    offset: ArrayField = parameter("Pose of the frame in the link's frame.", default=IDENTITY, shape="(4, 4)", unit="m")
 
 
 @data
@@ -174,19 +151,7 @@ class Robot(Data, CoreRobot):
         Raises ValueError if the file is not a valid URDF or more than MAX_DOF joints move, ParameterError if a locked
         joint does not exist or its position is out of range, OSError if the file cannot be read.
         """
-        from .io.urdf_tree import read_tree
-
         return cls(**read_tree(path, base=base, locked=locked or {}, tips=tips, limits=limits))
-
-
-def _from_urdf(
-    file: str,
-    *,
-    base: str | None = None,
-    locked: Mapping[str, float] | None = None,
-    tips: Sequence[str] | None = None,
-) -> Robot:
-    return Robot.from_urdf(file, base=base, locked=locked, tips=tips)
 
 
 def _preset(name: str) -> Arm | Robot:
@@ -196,4 +161,9 @@ def _preset(name: str) -> Arm | Robot:
 
 
 # Constructors of arms and robots, by the kind in a table.
-ROBOTS: dict[str, Callable[..., Arm | Robot]] = {**ARMS, "preset": _preset, "robot": _from_urdf, Robot.kind: Robot}
+ROBOTS: dict[str, Callable[..., Arm | Robot]] = {
+    **ARMS,
+    "preset": _preset,
+    "robot": from_file(Robot.from_urdf, "limits"),
+    Robot.kind: Robot,
+}

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from html import escape
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ._core import PathFollower, TargetFilter, Tick, Tracker
-
-if TYPE_CHECKING:
-    from .arms import JointLimits
 
 
 def html_table(caption: str, headings: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
@@ -34,14 +31,6 @@ def short(values: Any, decimals: int = 12) -> str:
     numbers = [f"{value:.3g}" for value in np.round(np.ravel(values), decimals) + 0.0]
     numbers = numbers if len(numbers) <= 12 else [*numbers[:12], "..."]
     return f"[{', '.join(numbers)}]"
-
-
-def joint_table(caption: str, names: Sequence[str], types: Sequence[str], limits: JointLimits) -> str:
-    """A row for each joint, with its type and its bounds, in HTML."""
-    headings = ["joint", "type", "lower", "upper", "velocity", "acceleration", "jerk"]
-    bounds = zip(limits.lower, limits.upper, limits.velocity, limits.acceleration, limits.jerk)
-    rows = [[name, kind, *map(number, each)] for name, kind, each in zip(names, types, bounds)]
-    return html_table(caption.strip("<>"), headings, rows)
 
 
 def _point(pose: Any) -> str:

@@ -2,9 +2,11 @@
 
 import numpy as np
 
+from ._core import link_frames as core_link_frames
+from ._core import named_frames
 from ._types import Array
-from .arms import Arm, Joint, PlanarArm, SerialArm
-from .errors import not_one_of
+from .arms import Arm, PlanarArm, SerialArm
+from .joints import Joint
 from .robots import Robot
 from .tasks import FrameTask
 
@@ -35,16 +37,11 @@ def joint_points(arm: Arm | Robot, q: Array) -> Array:
     For a Robot, branch after branch: NaN precedes a branch that does not start at the end of the previous branch. A
     link that carries no joint ends at its frames.
     """
-    if isinstance(arm, PlanarArm):
-        heading = np.cumsum(q, axis=-1)
-        links = arm.lengths[:, None] * np.stack([np.cos(heading), np.sin(heading)], axis=-1)
-        return np.cumsum(np.concatenate([np.zeros_like(links[..., :1, :]), links], axis=-2), axis=-2)
-    points, turns = _forward_pass(arm, q)
-    tips = [
-        (points[..., link, :] + turns[..., link, :, :] @ offset[:3, 3])[..., None, :] for link, offset in _ends(arm)
-    ]
-    nowhere = np.full_like(points[..., :1, :], np.nan)
-    return np.concatenate([points, *tips, nowhere], axis=-2)[..., _line(arm), :]
+    frames = link_frames(arm, q)
+    tips = [(frames[..., link, :, :] @ offset[:, 3])[..., None, :3] for link, offset in _ends(arm)]
+    nowhere = np.full_like(frames[..., :1, :3, 3], np.nan)
+    points = np.concatenate([frames[..., :3, 3], *tips, nowhere], axis=-2)
+    return points[..., 1:-1, :2] if isinstance(arm, PlanarArm) else points[..., _line(arm), :]
 
 
 def length(arm: Arm | Robot, q: Array) -> float:
@@ -62,16 +59,8 @@ def link_frames(arm: Arm | Robot, q: Array) -> Array:
 
     Shape (..., n + 1, 4, 4), or (..., k + 1, 4, 4) for k joints, including mimic joints; numbered as Capsule.link.
     """
-    if isinstance(arm, PlanarArm):
-        points = np.zeros((*q.shape[:-1], arm.dof + 1, 3))
-        points[..., 1:, :2] = joint_points(arm, q)[..., :-1, :]
-        heading = np.concatenate([np.zeros_like(q[..., :1]), np.cumsum(q, axis=-1)], axis=-1)
-        turns = _rotations(np.array([0.0, 0.0, 1.0]), heading)
-    else:
-        points, turns = _forward_pass(arm, q)
-    frames = np.tile(np.eye(4), (*points.shape[:-1], 1, 1))
-    frames[..., :3, :3], frames[..., :3, 3] = turns, points
-    return frames
+    frames = core_link_frames(arm, q.reshape(-1, arm.dof))
+    return frames.reshape(*q.shape[:-1], *frames.shape[1:])
 
 
 def task_frames(arm: Arm | Robot, q: Array, task: FrameTask) -> Array:
@@ -82,19 +71,7 @@ def task_frames(arm: Arm | Robot, q: Array, task: FrameTask) -> Array:
 
 def frames_of(arm: Arm | Robot, q: Array, name: str) -> Array:
     """Frame of that name, as in tasks, shape (..., 4, 4). Raises ParameterError if the frame does not exist."""
-    names = arm.joint_names if isinstance(arm, PlanarArm) else [joint.name for joint in joints_of(arm)]
-    places = {"base": (0, np.eye(4))} | {name: (i, np.eye(4)) for i, name in enumerate(names, 1)}
-    if isinstance(arm, Robot):
-        places |= {each.name: (each.link, each.offset) for each in arm.named_frames}
-    else:
-        tip = np.eye(4)
-        if isinstance(arm, PlanarArm):
-            tip[0, 3] = arm.lengths[-1]
-        places["tip"] = len(places) - 1, arm.tip if isinstance(arm, SerialArm) else tip
-    if name not in places:
-        raise not_one_of("frame", name, places)
-    link, offset = places[name]
-    return np.asarray(link_frames(arm, q)[..., link, :, :] @ offset)
+    return named_frames(arm, q.reshape(-1, arm.dof), name).reshape(*q.shape[:-1], 4, 4)
 
 
 def _parents(arm: Arm | Robot) -> list[int]:
@@ -106,9 +83,13 @@ def _ends(arm: Arm | Robot) -> list[tuple[int, Array]]:
     """Links and the frames on them that are drawn beyond the last joints."""
     if isinstance(arm, SerialArm):
         return [(len(arm.joints), arm.tip)]
-    carrying = _parents(arm)
-    frames = arm.named_frames if isinstance(arm, Robot) else ()
-    return [(each.link, each.offset) for each in frames if each.link not in carrying and each.offset[:3, 3].any()]
+    if isinstance(arm, Robot):
+        carrying, frames = _parents(arm), arm.named_frames
+        return [(each.link, each.offset) for each in frames if each.link not in carrying and each.offset[:3, 3].any()]
+    assert isinstance(arm, PlanarArm)
+    tip = np.eye(4)
+    tip[0, 3] = arm.lengths[-1]
+    return [(arm.dof, tip)]
 
 
 def _line(arm: Arm | Robot) -> list[int]:
@@ -119,37 +100,3 @@ def _line(arm: Arm | Robot) -> list[int]:
         for a, b in [(parent, link), *((link, tip) for tip in tips)]:
             line += [b] if line[-1] == a else [-1, a, b]
     return line
-
-
-def _forward_pass(arm: Arm | Robot, q: Array) -> tuple[Array, Array]:
-    """Positions of base and joints, and rotations of base and links after the joints' motion."""
-    p = np.zeros((*q.shape[:-1], 3))
-    points, turns = [p], [np.broadcast_to(np.eye(3), (*p.shape, 3))]
-    joints = joints_of(arm)
-    for joint, parent, position in zip(joints, _parents(arm), _positions(joints, q)):
-        p, R = points[parent], turns[parent]
-        p, R = p + R @ joint.placement[:3, 3], R @ joint.placement[:3, :3]
-        axis = joint.axis / np.linalg.norm(joint.axis)
-        if joint.type == "prismatic":
-            p = p + position[..., None] * (R @ axis)
-        else:
-            R = R @ _rotations(axis, position)
-        points.append(p)
-        turns.append(R)
-    return np.stack(points, axis=-2), np.stack(turns, axis=-3)
-
-
-def _positions(joints: list[Joint], q: Array) -> list[Array]:
-    """Position of each joint, including mimic joints."""
-    mimics = [joint.mimic for joint in joints]
-    driven = (i for i, mimic in enumerate(mimics) if mimic is None)
-    own = {i: q[..., column] for column, i in enumerate(driven)}
-    return [own[i] if mimic is None else mimic[1] * own[mimic[0]] + mimic[2] for i, mimic in enumerate(mimics)]
-
-
-def _rotations(axis: Array, angle: Array) -> Array:
-    """Rotation matrices about a unit axis (Rodrigues' formula)."""
-    x, y, z = axis
-    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    sine, cosine = np.sin(angle)[..., None, None], np.cos(angle)[..., None, None]
-    return np.asarray(np.eye(3) + sine * K + (1.0 - cosine) * (K @ K))

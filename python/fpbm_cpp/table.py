@@ -14,15 +14,16 @@ from typing import Any
 
 import numpy as np
 
-from .arms import Joint, JointLimits, SerialArm
+from .arms import SerialArm
 from .capsule import Capsule
 from .clearance import CLEARANCES, Clearance
 from .errors import ParameterError, not_one_of, suggestion, wrong
+from .joints import Joint, JointLimits, NamedFrame, TreeJoint
 from .obstacle import OBSTACLES
 from .parameter import REQUIRED, Data, Parameter, parameters
 from .paths import PATH_OPTIONS, PATHS, InPlane, WithRotation
 from .paths import Sequence as PathSequence
-from .robots import ROBOTS, NamedFrame, Robot, TreeJoint
+from .robots import ROBOTS, Robot
 from .schemes import SCHEMES
 from .task_bounds import TaskBounds
 from .tasks import TASKS, AxisTask, PositionTask, Stack, Task

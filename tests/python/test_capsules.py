@@ -25,12 +25,12 @@ import fpbm_cpp as fp
 from fpbm_cpp._types import Array
 from fpbm_cpp.capsule import Capsule
 from fpbm_cpp.errors import ParameterError
-from fpbm_cpp.io import capsules
-from fpbm_cpp.io.capsule_fit import Fit, distances, fit_capsule, fit_cylinder
-from fpbm_cpp.io.capsules import capsules_of
-from fpbm_cpp.io.mesh_file import read_mesh
-from fpbm_cpp.io.urdf import read_places
-from fpbm_cpp.io.urdf_shapes import CELLS, MANY, Shape, read_shapes
+from fpbm_cpp.urdf import capsules
+from fpbm_cpp.urdf.capsule_fit import Fit, distances, fit_capsule, fit_cylinder
+from fpbm_cpp.urdf.capsules import capsules_of
+from fpbm_cpp.urdf.chain import read_places
+from fpbm_cpp.urdf.mesh_file import read_mesh
+from fpbm_cpp.urdf.shapes import CELLS, MANY, Shape, read_shapes
 
 trimesh = pytest.importorskip("trimesh")
 
@@ -372,7 +372,7 @@ def test_missing_extra_is_named(tmp_path: Path, write) -> None:
     file = write(link("base"), link("tip", geometry('mesh filename="part.stl"')), joint("a", "base", "tip"))
     program = (
         "import sys; sys.modules['trimesh'] = None\n"
-        "from fpbm_cpp.io.capsules import capsules_of\n"
+        "from fpbm_cpp.urdf.capsules import capsules_of\n"
         f"try: capsules_of({str(file)!r}, 'tip')\n"
         "except ImportError as error: print(error)"
     )

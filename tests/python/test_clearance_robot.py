@@ -15,7 +15,7 @@ from test_capsules import ROBOTS, with_robots
 
 import fpbm_cpp as fp
 from fpbm_cpp._types import Array
-from fpbm_cpp.io.capsule_gaps import link_frames, postures
+from fpbm_cpp.urdf.capsule_gaps import link_frames, postures
 
 MOTIONS = int(os.environ.get("FPBM_MOTIONS", "20"))
 TICKS = 2000

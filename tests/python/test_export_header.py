@@ -29,8 +29,8 @@ pytest.importorskip("click")
 from click.testing import CliRunner, Result
 
 from fpbm_cpp.cli import command
-from fpbm_cpp.io.capsules import capsules_of
-from fpbm_cpp.io.urdf import read_urdf
+from fpbm_cpp.urdf.capsules import capsules_of
+from fpbm_cpp.urdf.chain import read_urdf
 
 ROOT = Path(__file__).parents[2]
 EIGEN = Path("/usr/include/eigen3")

@@ -17,12 +17,12 @@ from test_preset_capsules import PRESETS, load_tool, needs_clone, urdf_of
 import fpbm_cpp as fp
 from fpbm_cpp._types import Array
 from fpbm_cpp.clearance import MARGIN
-from fpbm_cpp.io.capsule_fit import Fit
-from fpbm_cpp.io.capsule_gaps import Gaps, Link, Part, capsules_apart, hulls_apart, link_frames, postures
-from fpbm_cpp.io.capsule_slabs import MOST
-from fpbm_cpp.io.capsules import capsules_of
-from fpbm_cpp.io.urdf import read_places
-from fpbm_cpp.io.urdf_shapes import Shape, read_shapes
+from fpbm_cpp.urdf.capsule_fit import Fit
+from fpbm_cpp.urdf.capsule_gaps import Gaps, Link, Part, capsules_apart, hulls_apart, link_frames, postures
+from fpbm_cpp.urdf.capsule_slabs import MOST
+from fpbm_cpp.urdf.capsules import capsules_of
+from fpbm_cpp.urdf.chain import read_places
+from fpbm_cpp.urdf.shapes import Shape, read_shapes
 
 pytest.importorskip("trimesh")
 

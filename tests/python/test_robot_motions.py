@@ -10,7 +10,7 @@ import pytest
 
 import fpbm_cpp as fp
 from fpbm_cpp._types import Array
-from fpbm_cpp.motion.task_frames import tracks
+from fpbm_cpp.motion.task_errors import tracks
 from fpbm_cpp.skeleton import frames_of, joint_points, joint_units, joints_of, length, link_frames
 
 ROBOT = fp.Robot.preset("two_pandas")
@@ -230,7 +230,7 @@ def test_the_points_of_a_tree(urdf: Path, base: str | None) -> None:
     axis, J = joints_of(robot)[-1].axis, robot.jacobian(q[0, 0], "right_tool")
     np.testing.assert_allclose(frames[0, 0, -1, :3, :3] @ axis, J[3:, -1], atol=1e-12)
     assert joint_units(robot).count("m") == (0 if base is None else 2)
-    with pytest.raises(fp.ParameterError, match="frame = 'left_tol': must be one of"):
+    with pytest.raises(fp.ParameterError, match="frame = 'left_tol': must be a frame"):
         frames_of(robot, q, "left_tol")
 
 

@@ -12,7 +12,7 @@ import pytest
 from test_track import BENT, PANDA, TIGHT
 
 import fpbm_cpp as fp
-from fpbm_cpp.io.tables import quaternions
+from fpbm_cpp.motion.tables import quaternions
 
 FLAT = fp.PlanarArm([1, 1, 1, 1])
 RAIL = fp.SerialArm(

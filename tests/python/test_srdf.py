@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from fpbm_cpp.io.srdf import read_disabled_pairs, read_group_states
+from fpbm_cpp.urdf.srdf import read_disabled_pairs, read_group_states
 
 
 @pytest.fixture

@@ -472,6 +472,64 @@ def test_an_arm_continues_after_a_wall(panda, level):
     assert excess(panda.limits, run.q) < 1e-9
 
 
+@pytest.mark.parametrize(
+    ("alone", "law"),
+    [
+        (fp.MVN(k=5), fp.MVN()),
+        (fp.FPBM(0.6, np.arange(1, 8), 10, 25, null_damping=2), fp.Balanced(0.6, np.arange(1, 8), null_damping=2)),
+    ],
+    ids=["velocity", "acceleration"],
+)
+@pytest.mark.parametrize(
+    ("radius", "dt", "status"),
+    [(0.1, 0.01, fp.Status.OK), (0.1, 0.25, fp.Status.COARSE), (0.8, 0.01, fp.Status.TASK_LOST)],
+    ids=["complete", "coarse", "unreachable"],
+)
+def test_a_simulated_stack_of_one_task_equals_the_task(panda, alone, law, radius, dt, status):
+    """simulate() has one integrator: arrays and status are those of the task without a stack."""
+    circle = fp.Circle(radius, 2.0).in_plane("yz")
+    one = fp.simulate(panda, circle, alone, READY, dt=dt, hold=0.5, partial=True)
+    many = fp.simulate(panda, circle, law, READY, dt=dt, hold=0.5, partial=True, stack=fp.Stack(fp.PositionTask()))
+    assert many.status.code is one.status.code is status
+    for name in ("t", "q", "qd", "qdd", "x", "x_ref", "error"):
+        np.testing.assert_allclose(getattr(many, name), getattr(one, name), rtol=1e-6, atol=1e-9, err_msg=name)
+    np.testing.assert_array_equal(many.task_errors, many.error)
+    assert many.scale is many.scales is many.saturated is None
+    assert many.replay() == many
+
+
+@pytest.mark.parametrize(
+    "law", [fp.MVN(), fp.Balanced(0.6, np.ones(7), null_damping=2)], ids=["velocity", "acceleration"]
+)
+@pytest.mark.parametrize("dt", [0.01, 0.001])
+def test_rows_along_the_axes_of_a_rotating_frame_do_not_stop_the_motion(panda, law, dt):
+    """If selected axes rotate, the free displacement moves into the rows, also with exact integration."""
+    free = fp.Stack(fp.PositionTask(axes="frame", rows=("x", "y"), name="place"), fp.AxisTask(x=[1, 0, -1]))
+    run = fp.simulate(panda, fp.Circle(0.08, 2.0).in_plane("yz"), law, READY, stack=free, task="place", dt=dt)
+    assert run.status.code is fp.Status.OK
+    turned = fp.Stack(fp.PoseTask(axes="frame", rows=("x", "y", "z", "rx", "ry")))
+    path = fp.Circle(0.08, 2.0).in_plane("yz").with_rotation([0.3, 0.2, 1.2])
+    assert fp.simulate(panda, path, law, READY, stack=turned, dt=dt).status.code is fp.Status.OK
+
+
+def test_a_simulated_stack_holds_targets_and_ends_each_path_in_time(panda):
+    """A task with a target converges to the target, and a task whose path has ended stays at the end of the path."""
+    stack = fp.Stack(fp.PositionTask(name="hand"), fp.AxisTask(x=[0, 0.3, -1], name="tool"), fp.PostureTask(READY))
+    run = fp.simulate(
+        panda, {"hand": fp.Line([0, 0, 0.05], 1.0)}, fp.Balanced(0.6, np.ones(7)), READY, stack=stack, hold=2
+    )
+    assert run.status.code is fp.Status.OK
+    assert run.max_error() < 1e-6
+    assert np.linalg.norm(run.errors["tool"][0]) > 0.2
+    assert np.linalg.norm(run.errors["tool"][-1]) < 1e-4
+    both = fp.Stack([fp.PositionTask(name="hand"), fp.PositionTask("panda_joint4", rows=("y",), name="elbow")])
+    paths = {"hand": fp.Line([0, 0, 0.05], 1.0), "elbow": fp.Line([0, 0.05, 0], 0.5)}
+    run = fp.simulate(panda, paths, fp.MVN(), READY, stack=both, dt=0.01)
+    elbow = run.frames["elbow"][:, 1, 3]
+    assert run.t[-1] == 1.0
+    assert np.abs(elbow[50:] - elbow[0] - 0.05).max() < 1e-5
+
+
 def test_one_path_of_several_tasks_names_its_task(panda, balanced):
     """A dictionary of one path needs no task=, as in track(), also in sweep()."""
     stack = fp.Stack(fp.PositionTask(name="hand"), fp.PositionTask("panda_joint4", name="elbow"))

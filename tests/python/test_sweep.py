@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import fpbm_cpp as fp
+from fpbm_cpp.motion._lanes import LANES
 
 FIGURES = [
     "time",
@@ -119,7 +120,7 @@ def test_motions_in_lanes_agree_with_single_motions(case, within):
 def test_lanes_do_not_influence_one_another(within):
     arm, path, task, q0 = CASES["panda pose"]
     scheme = every_scheme(7)[-2]
-    q0s = q0 + np.random.default_rng(4).uniform(-0.05, 0.05, (fp.LANES + 3, 7))
+    q0s = q0 + np.random.default_rng(4).uniform(-0.05, 0.05, (LANES + 3, 7))
     bad = q0s.copy()
     bad[1::2] = [0, 0, 0, -0.08, 0, 0.1, 0]  # Outstretched: the path has unreachable points.
     how = {"task": task, "limits": None if within is None else narrow(arm, within)}
@@ -137,7 +138,7 @@ def test_lanes_do_not_influence_one_another(within):
 
 @pytest.mark.parametrize("choice", ["none", "avx2", "avx512"])
 def test_lanes_can_be_chosen(choice):
-    code = "import fpbm_cpp as fp; print(fp.LANES)"
+    code = "from fpbm_cpp.motion._lanes import LANES; print(LANES)"
     environment = {**os.environ, "FPBM_LANES": choice}
     run = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
     known = {"none": "1", "avx2": "4", "avx512": "8"}[choice]

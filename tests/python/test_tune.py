@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 import fpbm_cpp as fp
 from fpbm_cpp.tuning import search, tuner
-from fpbm_cpp.tuning.result import Trials, sensitivity
 from fpbm_cpp.tuning.search import pareto_front
+from fpbm_cpp.tuning.trials import Trials, sensitivity
 
 pytest.importorskip("cmaes")
 

@@ -23,8 +23,8 @@ from scipy.spatial.transform import Rotation
 import fpbm_cpp as fp
 from fpbm_cpp.arms import Joint
 from fpbm_cpp.errors import ParameterError
-from fpbm_cpp.io.urdf import read_urdf
-from fpbm_cpp.io.xml_file import MAX_ELEMENTS
+from fpbm_cpp.urdf.chain import read_urdf
+from fpbm_cpp.urdf.xml_file import MAX_ELEMENTS
 
 LIMIT = '<limit lower="-1" upper="2" velocity="3" effort="4"/>'
 Z = '<axis xyz="0 0 1"/>'

@@ -26,10 +26,9 @@ pytest.importorskip("yourdfpy")
 from viser.transforms import SO3
 
 from fpbm_cpp.parameter import parameters
-from fpbm_cpp.skeleton import joint_points, link_frames
+from fpbm_cpp.skeleton import joint_points
 from fpbm_cpp.viewer import Viewer, controls
 from fpbm_cpp.viewer import viewer as viewer_module
-from fpbm_cpp.viewer.gap import nearest_points
 from fpbm_cpp.viewer.playback import FRAMES, Playback
 from fpbm_cpp.viewer.scene import Links, Meshes, along
 
@@ -220,7 +219,7 @@ def test_the_line_is_as_long_as_the_distance_of_the_shapes(seed):
     clearance = fp.Clearance([fp.Capsule(2, [0, 0, 0], [0, -0.3, 0], 0.05), *hand], around)
     q = rng.uniform(-2.5, 2.5, 7)
     nearest = clearance.nearest(arm, q)
-    ends = nearest_points(clearance, link_frames(arm, q), nearest.pair)
+    ends = nearest.points
     if nearest.distance > 1e-6:
         assert np.linalg.norm(ends[1] - ends[0]) == pytest.approx(nearest.distance, abs=1e-9)
 

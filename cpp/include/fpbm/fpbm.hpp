@@ -178,6 +178,7 @@
 #include "fpbm/scheme/weights.hpp"
 #include "fpbm/sim/anchored_path.hpp"
 #include "fpbm/sim/closed_loop.hpp"
+#include "fpbm/sim/first_level.hpp"
 #include "fpbm/sim/motion.hpp"
 #include "fpbm/sim/rk4.hpp"
 #include "fpbm/sim/rollout.hpp"

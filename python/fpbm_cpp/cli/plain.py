@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..io import write_whole
+from ..files import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -11,13 +11,12 @@ import click
 import numpy as np
 
 from .._core import Status, advice, message
-from ..errors import SweepInterrupted, TuneInterrupted
 from ..motion.comparison import FIGURES, Row, figure_table
-from ..motion.sweeping import Sweep
+from ..motion.sweeping import Sweep, SweepInterrupted
 from ..motion.sweeping import sweep as run_sweep
 from ..schemes import FPBM
 from ..shown import number
-from ..tuning import Tuning
+from ..tuning import TuneInterrupted, Tuning
 from ..tuning import tune as search
 from ..tuning.tuner import OBJECTIVES
 from .plain import content, dark_option, make_folder, out_option, picture, progress, workers_option, write_files

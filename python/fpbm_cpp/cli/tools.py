@@ -13,26 +13,25 @@ import numpy as np
 from click.shell_completion import get_completion_class
 
 from .._core import PRESETS, ROBOT_PRESETS, __version__
-from .._types import Array
-from ..arms import Joint, JointLimits, SerialArm, limited
+from ..arms import SerialArm
 from ..capsule import Capsule
 from ..clearance import Clearance
 from ..io.header import SCALARS
 from ..job import Motion, prepare
 from ..job.sections import Table
+from ..joints import JointLimits, limited
+from ..motion._lanes import LANES
 from ..motion.comparison import columns
-from ..motion.lanes import LANES
 from ..motion.sweeping import sweep
 from ..parameter import parameters
 from ..robots import Robot
 from ..schemes import SCHEMES
+from ..urdf.capsules import capsules_of
 from ..worst import measure
 from .plain import OUT, PLACE, WIDTH, Plain, file_errors
 from .request import limit_options
 
 EVALUATIONS = 4000  # Evaluations of a scheme by RK4 on a path of 1 s at 1 kHz.
-# Joints, frame of the tip, capsules, and their source for a comment.
-Exported = tuple[Sequence[Joint], Array, Sequence[Capsule] | None, str]
 PROCESSORS = os.cpu_count() or 1
 MOTIONS = 4 * PROCESSORS * LANES  # Motions of a sweep.
 HOW = (
@@ -163,7 +162,7 @@ def export_header(
     links of the file. A program with the header reads no file. The options for limits replace bounds of the file or
     the preset: URDF files have no bounds on acceleration.
     """
-    from ..io import write_whole
+    from ..files import write_whole
     from ..io.header import export_header, export_tree, namespace_of
 
     to_stdout = str(out) == "-"
@@ -178,10 +177,11 @@ def export_header(
             source += _changed(given)
             header = export_tree(robot, name=name, source=source, scalar=scalar)
         else:
-            exported = _preset(arm, tip, base, capsules, limits) or _urdf(arm, tip[0], base, capsules, limits)
-            joints, frame, shapes, source = exported
+            exported, shapes, source = _arm(arm, tip, base, capsules, limits)
             source += _changed(given)
-            header = export_header(joints, frame, name=name, source=source, capsules=shapes, scalar=scalar)
+            header = export_header(
+                exported.joints, exported.tip, name=name, source=source, capsules=shapes, scalar=scalar
+            )
     except ValueError as error:
         raise click.ClickException(str(error)) from None
     if to_stdout:
@@ -204,25 +204,19 @@ def _text(value: Any) -> str:
     return ",".join(f"{number:g}" for number in np.ravel(value))
 
 
-def _preset(
+def _arm(
     arm: Path, tip: Sequence[str], base: str | None, capsules: bool, limits: JointLimits | None
-) -> Exported | None:
-    if str(arm) not in PRESETS:
-        return None
-    _require_no_links(arm, tip, base)
-    preset = SerialArm.preset(str(arm))
-    joints = limited(preset.joints, limits)
-    return joints, preset.tip, Clearance.preset(str(arm)).capsules if capsules else None, f"preset {arm}"
-
-
-def _urdf(urdf: Path, tip: str, base: str | None, capsules: bool, limits: JointLimits | None) -> Exported:
-    from ..io.capsules import capsules_of
-    from ..io.urdf import read_urdf
-
-    with file_errors("read", urdf):
-        joints, frame = read_urdf(urdf, tip, base, limits)
-        shapes = capsules_of(urdf, tip, base, limits=limits) if capsules else None
-    return joints, frame, shapes, _said(urdf, base, [tip])
+) -> tuple[SerialArm, Sequence[Capsule] | None, str]:
+    """The arm of a preset or a file, its capsules, and its source for a comment."""
+    if str(arm) in PRESETS:
+        _require_no_links(arm, tip, base)
+        preset = SerialArm.preset(str(arm))
+        changed = replace(preset, joints=limited(preset.joints, limits))
+        return changed, Clearance.preset(str(arm)).capsules if capsules else None, f"preset {arm}"
+    with file_errors("read", arm):
+        read = SerialArm.from_urdf(arm, tip[0], base, limits=limits)
+        shapes = capsules_of(arm, tip[0], base, limits=limits) if capsules else None
+    return read, shapes, _said(arm, base, tip)
 
 
 def _robot(urdf: Path, tips: Sequence[str], base: str | None, limits: JointLimits | None) -> tuple[Robot, str]:

@@ -8,10 +8,10 @@ from math import inf
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arms import Joint
 from ..capsule import Capsule
 from ..errors import not_one_of, wrong
-from ..robots import NamedFrame, Robot, TreeJoint
+from ..joints import Joint, NamedFrame, TreeJoint
+from ..robots import Robot
 
 SCALARS = ("double", "float")
 

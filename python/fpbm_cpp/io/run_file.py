@@ -15,16 +15,19 @@ import numpy as np
 from .._core import Status, __version__, processor_kinds
 from ..arms import PlanarArm
 from ..errors import not_one_of
-from ..motion.run import ARRAYS, LIMITED, OF_STACKS, Run, RunStatus
+from ..files import write_whole
+from ..motion.run import Run
+from ..motion.run_data import ARRAYS, LIMITED, OF_STACKS, RunStatus
+from ..motion.simulation import simulate, track
 from ..robots import ROBOTS
 from ..schemes import SCHEMES
 from ..table import EVERY_PATH, Makers, from_table, to_table
 from ..tasks import TASKS
-from . import write_whole
 
 FORMAT = "fpbm_cpp run"
 KINDS: dict[str, Makers] = {"arm": ROBOTS, "path": EVERY_PATH, "scheme": SCHEMES}
-VERSION = 1  # Version of the format; incremented for each format that older packages cannot read.
+FUNCTIONS = {each.__name__: each for each in (simulate, track)}  # Functions that make runs, by name.
+VERSION = 2  # Version of the format; incremented for each new format.
 
 
 def save(run: Run, file: str | os.PathLike[str], note: Any, seed: Any) -> None:
@@ -34,6 +37,7 @@ def save(run: Run, file: str | os.PathLike[str], note: Any, seed: Any) -> None:
         "version": VERSION,
         **{name: to_table(getattr(run, name)) for name in KINDS},
         "task": run.task,
+        "function": None if run.function is None else run.function.__name__,
         "options": {name: to_table(value) for name, value in run.options.items()},
         "status": {"code": run.status.code.name, "time": run.status.time, "q": run.status.q.tolist()},
         "provenance": _provenance(run, note, seed),
@@ -49,7 +53,7 @@ def load(file: str | os.PathLike[str]) -> Run:
     Nothing in the file is executed: the classes of this package construct arm, path and scheme from numbers. The
     provenance of the run has date, machine and versions, note and seed.
 
-    Raises ValueError if the file is not a run, is damaged, names anything outside this package, or has a newer format;
+    Raises ValueError if the file is not a run, is damaged, names anything outside this package, or has another format;
     OSError if the file cannot be read.
     """
     content = FilePath(file).read_bytes()
@@ -57,9 +61,10 @@ def load(file: str | os.PathLike[str]) -> Run:
         meta, arrays = _members(content)
     except Exception as error:  # Readers of damaged files raise exceptions of every kind.
         raise ValueError(f"{file}: must be a complete file from Run.save(): {error}") from error
-    if meta["version"] > VERSION:
-        newest = f"{VERSION}, the newest that fpbm_cpp {__version__} reads: upgrade fpbm_cpp"
-        raise ValueError(f"{file}: format {meta['version']} is newer than {newest}")
+    if meta["version"] != VERSION:
+        remedy = "upgrade fpbm_cpp" if meta["version"] > VERSION else "make the run again"
+        demand = f"must be {VERSION}, the format of fpbm_cpp {__version__}: {remedy}"
+        raise ValueError(f"{file}: format {meta['version']}: {demand}")
     try:
         return _run(meta, arrays)
     except Exception as error:
@@ -109,8 +114,6 @@ def _members(content: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
 def _run(meta: dict[str, Any], arrays: dict[str, Any]) -> Run:
     made_of = {name: from_table(meta[name], KINDS[name], name) for name in KINDS}
     options: dict[str, Any] = {name: np.inf if value == "inf" else value for name, value in meta["options"].items()}
-    if "scale" in arrays:
-        options.setdefault("null_damping", 0.0)  # Before this option existed, trackers added no damping.
     for name in ("limits", "clearance"):
         if options.get(name) is not None:
             options[name] = from_table(options[name], name=name)
@@ -121,7 +124,8 @@ def _run(meta: dict[str, Any], arrays: dict[str, Any]) -> Run:
     status = meta["status"]
     ended = RunStatus(Status[status["code"]], status["time"], np.array(status["q"], dtype=float))
     how = {"task": meta["task"], "options": options, "provenance": dict(meta["provenance"])}
-    run = Run(**arrays, **made_of, **how, status=ended)
+    function = None if meta["function"] is None else FUNCTIONS[meta["function"]]
+    run = Run(**arrays, **made_of, **how, status=ended, function=function)
     _check_shapes(run)
     return run
 

@@ -16,12 +16,14 @@ from tomlkit.exceptions import TOMLKitError
 
 from .._core import check_sweep
 from .._types import Array
-from ..arms import Arm, JointLimits, PlanarArm, SerialArm
+from ..arms import Arm, PlanarArm, SerialArm
 from ..clearance import Clearance
 from ..errors import not_one_of, wrong
-from ..io import write_whole
-from ..motion.run import Paths, Run
-from ..motion.simulation import simulate, task_and_paths, track, without_limits
+from ..files import write_whole
+from ..joints import JointLimits
+from ..motion.run import Run
+from ..motion.run_data import Paths
+from ..motion.simulation import simulate, task_and_paths, track
 from ..parameter import REQUIRED
 from ..paths import PATH_OPTIONS, Circle, Path
 from ..robots import Robot
@@ -167,9 +169,8 @@ def prepare(job: Table) -> Motion:
     motion = Motion(full, taken(job, full), arm, path, scheme, options, stack, limits, clearance, bounds)
     with job_errors():
         try:
-            name, kind, followed, others = task_and_paths(path, options.task, stack)
-            alone = None if stack is None else without_limits(arm, stack, name)._replace(other_paths=others)
-            check_sweep(arm, followed, [scheme], options.q0, options.dt, options.hold, kind, alone)
+            _, kind, followed, tasks = task_and_paths(path, options.task, stack)
+            check_sweep(arm, followed, [scheme], options.q0, options.dt, options.hold, kind, None, tasks)
         except ValueError:
             motion.run()  # Raises the error of check_sweep(), with the names in the job.
             raise

@@ -9,9 +9,10 @@ from math import inf
 from typing import Any
 
 from .._types import OptionalArrayField
-from ..arms import Arm, JointLimits, SerialArm
+from ..arms import Arm, SerialArm
 from ..clearance import CLEARANCES, Clearance
 from ..errors import ParameterError, suggestion, wrong
+from ..joints import JointLimits
 from ..parameter import NOT_NEGATIVE, POSITIVE, Data, Parameter, data, parameter
 from ..paths import PATHS
 from ..robots import ROBOTS, Robot

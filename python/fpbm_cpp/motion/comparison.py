@@ -53,7 +53,12 @@ def _text(header: list[list[str]], cells: list[list[str]], remarks: Iterable[str
 
 
 def named_runs(runs: Sequence[Run] | Mapping[str, Run]) -> dict[str, Run]:
-    """Runs by their names or, without names, by the names of their schemes, with numbers for equal names."""
+    """Runs by their names or, without names, by the names of their schemes, with numbers for equal names.
+
+    Raises ValueError if there is no run.
+    """
+    if not runs:
+        raise ValueError("runs: must hold at least one run")
     if isinstance(runs, Mapping):
         return dict(runs)
     names = [type(run.scheme).__name__ for run in runs]
@@ -100,8 +105,6 @@ def comparison(runs: Sequence[Run] | Mapping[str, Run]) -> Comparison:
     Runs without names get the names of their schemes. Raises ValueError if there is no run.
     """
     named = named_runs(runs)
-    if not named:
-        raise ValueError("runs: must hold at least one run")
     remarks: dict[str, list[str]] = {}
     for name, run in named.items():
         if run.status.code is not Status.OK or run.status.left_path:

@@ -1,21 +1,23 @@
 """A whole motion: simulated without limits, or tracked within the joint limits."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from .._core import failed, rollout
-from ..arms import Arm, JointLimits, limits_of
+from ..arms import Arm
 from ..clearance import Clearance
 from ..errors import ResolutionError, not_one_of, require, wrong
+from ..joints import JointLimits, limits_of
 from ..paths import Path
 from ..robots import Robot
 from ..schemes import Scheme
 from ..task_bounds import TaskBounds
 from ..tasks import PoseTask, Stack
-from .run import Paths, Run, RunStatus
+from .run import Run
+from .run_data import Paths, RunStatus
 
 
 class LimitOptions(NamedTuple):
@@ -32,9 +34,14 @@ class LimitOptions(NamedTuple):
     clearance: Clearance | None = None
     bounds: Sequence[TaskBounds] = ()
     recover_start: bool = False
-    stack: Stack | None = None
-    task: str = ""  # Task of the stack that follows the path.
-    other_paths: Mapping[str, Path] = {}  # Paths of other tasks of the stack, by name.
+
+
+class StackTasks(NamedTuple):
+    """The tasks of a motion with a stack."""
+
+    stack: Stack
+    task: str  # Task of the run's x, x_ref and error.
+    other_paths: Mapping[str, Path] = {}  # Paths of the other tasks, by name.
 
 
 def simulate(
@@ -84,14 +91,11 @@ def simulate(
     """
     require_motion(arm, path, scheme)
     options = motion_options(arm, dt, hold, qd0)
-    name, kind, followed, others = task_and_paths(path, task, stack)
-    law = None if stack is None else without_limits(arm, stack, name)._replace(other_paths=others)
-    outcome = rollout(arm, followed, scheme, q0, options["qd0"], dt, hold, kind, law)
+    name, kind, followed, tasks = task_and_paths(path, task, stack)
+    outcome = rollout(arm, followed, scheme, q0, options["qd0"], dt, hold, kind, None, tasks)
     if stack is not None:
         options["stack"] = stack
-        for limited in ("scale", "saturated"):
-            del outcome[-1][limited]
-    run = make_run(outcome, q0, arm, path, scheme, name, options)
+    run = make_run(outcome, q0, arm, path, scheme, name, options, simulate)
     if failed(run.status.code) and not partial:
         raise ResolutionError(run.status.code, str(run.status), run)
     return run
@@ -141,7 +145,7 @@ def track(
     """
     require_motion(arm, path, scheme)
     options = motion_options(arm, dt, hold, qd0)
-    name, kind, followed, others = task_and_paths(path, task, stack)
+    name, kind, followed, tasks = task_and_paths(path, task, stack)
     require("bounds", bounds, Iterable, "TaskBounds in a sequence")
     limited = LimitOptions(
         limits_of(arm, limits),
@@ -155,12 +159,10 @@ def track(
         clearance,
         tuple(bounds),
         bool(recover_start),
-        stack,
-        name,
-        others,
     )
-    outcome = rollout(arm, followed, scheme, q0, options["qd0"], dt, hold, kind, limited)
-    return make_run(outcome, q0, arm, path, scheme, name, {**options, **limit_arguments(limited)})
+    outcome = rollout(arm, followed, scheme, q0, options["qd0"], dt, hold, kind, limited, tasks)
+    options |= {**limited._asdict(), "stack": stack}
+    return make_run(outcome, q0, arm, path, scheme, name, options, track)
 
 
 def require_motion(arm: object, path: object, *schemes: object) -> None:
@@ -180,10 +182,11 @@ def path_task(task: str | None, stack: Stack | None) -> tuple[str, str]:
     return followed.name, "pose" if isinstance(followed, PoseTask) else "position"
 
 
-def task_and_paths(path: Paths, task: str | None, stack: Stack | None) -> tuple[str, str, Path, dict[str, Path]]:
-    """Name and kind of the run's task, its path, and the paths of the other tasks. Raises ParameterError."""
+def task_and_paths(path: Paths, task: str | None, stack: Stack | None) -> tuple[str, str, Path, StackTasks | None]:
+    """Name and kind of the run's task, its path, and the tasks of a stack. Raises ParameterError."""
     if not isinstance(path, Mapping):
-        return *path_task(task, stack), path, {}
+        name, kind = path_task(task, stack)
+        return name, kind, path, None if stack is None else StackTasks(stack, name)
     if stack is None or not path:
         raise wrong("path", path, f" = {path!r:.80}: must be one path, or paths by task names of a stack")
     for each, followed in path.items():
@@ -192,33 +195,17 @@ def task_and_paths(path: Paths, task: str | None, stack: Stack | None) -> tuple[
     name = next(iter(path)) if task is None else task
     if name not in path:
         raise not_one_of("task", name, path)
-    return *path_task(name, stack), path[name], {each: followed for each, followed in path.items() if each != name}
+    others = {each: followed for each, followed in path.items() if each != name}
+    return *path_task(name, stack), path[name], StackTasks(stack, name, others)
 
 
 def one_path(path: Paths, task: str | None, stack: Stack | None) -> tuple[Path, str | None]:
     """The path and its task, for functions of one path. A dictionary of one path names the task."""
-    name, _, followed, others = task_and_paths(path, task, stack)
-    if others:
-        raise wrong(
-            "path", path, f" has paths of {1 + len(others)} tasks: must be one path; simulate() and track() accept more"
-        )
+    name, _, followed, tasks = task_and_paths(path, task, stack)
+    if tasks is not None and tasks.other_paths:
+        many = f" has paths of {1 + len(tasks.other_paths)} tasks"
+        raise wrong("path", path, f"{many}: must be one path; simulate() and track() accept more")
     return followed, name if isinstance(path, Mapping) else task
-
-
-def limit_arguments(options: LimitOptions) -> dict[str, Any]:
-    """The options of a run, without its task and its paths, which are separate fields."""
-    return {name: value for name, value in options._asdict().items() if name not in ("task", "other_paths")}
-
-
-def without_limits(arm: Arm | Robot, stack: Stack, task: str) -> LimitOptions:
-    """Options of a stack without limits: no stop at unreachable targets; only the scheme and the levels have damping.
-
-    error_bound is 1000 arm lengths, which no target exceeds.
-    """
-    free = np.full(arm.dof, np.inf)
-    limits = JointLimits(lower=-free, upper=free, velocity=free, acceleration=free)
-    alone = LimitOptions(limits, error_bound=1e3, stall_time=np.inf, null_damping=0.0)
-    return alone._replace(stack=stack, task=task)
 
 
 def motion_options(arm: Arm | Robot, dt: float, hold: float, qd0: ArrayLike | None = None) -> dict[str, Any]:
@@ -228,12 +215,20 @@ def motion_options(arm: Arm | Robot, dt: float, hold: float, qd0: ArrayLike | No
 
 
 def make_run(
-    outcome: Any, q0: ArrayLike, arm: Arm | Robot, path: Paths, scheme: Scheme, task: str, options: dict[str, Any]
+    outcome: Any,
+    q0: ArrayLike,
+    arm: Arm | Robot,
+    path: Paths,
+    scheme: Scheme,
+    task: str,
+    options: dict[str, Any],
+    function: Callable[..., Run],
 ) -> Run:
     """A run from the compiled part's result: status, time, number of samples, and arrays of at least this length."""
     code, time, samples, given = outcome
     arrays = {name: array if samples == len(array) else array[:samples].copy() for name, array in given.items()}
-    if scheme.level == "velocity" and samples > 1 and not {"scale", "scales"} & arrays.keys():
+    if function is simulate and scheme.level == "velocity" and samples > 1:
         arrays["qdd"] = np.gradient(arrays["qd"], arrays["t"], axis=0)
     status = RunStatus(code, time, arrays["q"][-1].copy() if samples else np.array(q0, dtype=float))
-    return Run(**arrays, status=status, arm=arm, path=path, scheme=scheme, task=task, options=options)
+    how: dict[str, Any] = {"task": task, "options": options, "function": function}
+    return Run(**arrays, status=status, arm=arm, path=path, scheme=scheme, **how)

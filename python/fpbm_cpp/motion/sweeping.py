@@ -11,23 +11,25 @@ from numpy.typing import ArrayLike, NDArray
 
 from .._core import Status, check_sweep, failed, not_run
 from .._types import Array
-from ..arms import Arm, JointLimits, limits_of
-from ..errors import SweepInterrupted, extra, wrong
+from ..arms import Arm
+from ..errors import extra, wrong
+from ..joints import JointLimits, limits_of
 from ..paths import Path
 from ..robots import Robot
 from ..schemes import Scheme
 from ..shown import html_table, number
 from ..tasks import Stack
-from .run import LIMITED, Paths
+from .run_data import Paths
 from .simulation import (
     LimitOptions,
-    limit_arguments,
+    StackTasks,
     make_run,
     motion_options,
     one_path,
     path_task,
     require_motion,
-    without_limits,
+    simulate,
+    track,
 )
 from .workers import run_chunks
 
@@ -125,6 +127,14 @@ class Sweep:
         return f"<Sweep of {len(self.schemes)} schemes from {len(self.q0s)} starts: {parts}>"
 
 
+class SweepInterrupted(KeyboardInterrupt):
+    """A sweep was stopped by Ctrl-C. sweep: the result with the finished motions, which sweep.done marks."""
+
+    def __init__(self, sweep: Sweep) -> None:
+        super().__init__(f"interrupted after {int(sweep.done.sum())} of {sweep.done.size} motions")
+        self.sweep = sweep
+
+
 def sweep(
     arm: Arm,
     path: Paths,
@@ -201,12 +211,14 @@ def sweep(
     if limits is None and limited != LimitOptions():
         given = [name for name, value in limited._asdict().items() if value != LimitOptions._field_defaults[name]]
         raise wrong("limits", None, f": must be given with {', '.join(given)}: give arm.limits or other limits")
-    kept = None if limits is None else limited._replace(stack=stack, task=name)
-    if limits is None and stack is not None:
-        kept = without_limits(arm, stack, name)
+    kept = None if limits is None else limited
+    tasks = None if stack is None else StackTasks(stack, name)
     options = motion_options(arm, dt, hold)
-    options.update({} if kept is None else limit_arguments(kept) if limits is not None else {"stack": stack})
-    starts, samples = check_sweep(arm, path, list(laws), q0s, dt, hold, kind, kept)
+    if kept is not None:
+        options |= {**kept._asdict(), "stack": stack}
+    elif stack is not None:
+        options["stack"] = stack
+    starts, samples = check_sweep(arm, path, list(laws), q0s, dt, hold, kind, kept, tasks)
     shape, total = (len(laws), len(starts)), len(laws) * len(starts)
     parts = _parts(total, len(starts), samples)
     outcomes, status, runs = not_run(total), np.full(total, None), np.full(total, None)
@@ -215,7 +227,19 @@ def sweep(
         """Input of a worker: motion i has laws[i // K] and starts[i % K], for K starts."""
         law, start = np.divmod(np.arange(part.start, part.stop), len(starts))
         few = list(laws[law[0] : law[-1] + 1])
-        return arm, path, few, (law - law[0]).tolist(), starts[start], float(dt), float(hold), kind, motions, kept
+        return (
+            arm,
+            path,
+            few,
+            (law - law[0]).tolist(),
+            starts[start],
+            float(dt),
+            float(hold),
+            kind,
+            motions,
+            kept,
+            tasks,
+        )
 
     def take(part: slice, figures: Any, arrays: list[Any]) -> None:
         outcomes[part] = figures
@@ -223,10 +247,8 @@ def sweep(
         for i, rows in zip(range(total)[part], arrays):
             if status[i] is not None:
                 law, start = laws[i // len(starts)], starts[i % len(starts)]
-                if limits is None:
-                    rows = {key: array for key, array in rows.items() if key not in LIMITED}
                 outcome = status[i], float(outcomes["time"][i]), int(outcomes["samples"][i]), rows
-                runs[i] = make_run(outcome, start, arm, path, law, name, options)
+                runs[i] = make_run(outcome, start, arm, path, law, name, options, simulate if kept is None else track)
 
     def result() -> Sweep:
         summary, whole = outcomes["summary"], runs.reshape(shape) if motions else None

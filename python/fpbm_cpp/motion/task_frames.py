@@ -1,8 +1,4 @@
-"""Frames of tasks along a motion: positions for figures, and Jacobians."""
-
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+"""Jacobians of tasks along a motion."""
 
 import numpy as np
 
@@ -10,32 +6,6 @@ from .._types import Array
 from ..robots import Robot
 from ..skeleton import frames_of, task_frames
 from ..tasks import FrameTask, PoseTask
-
-if TYPE_CHECKING:
-    from .run import Run
-
-
-def tracks(run: Run) -> list[tuple[Array, Array]]:
-    """For each path of a run: positions of the task's frame and of its reference in the base frame [m], (N, 2 or 3)."""
-    found = [(run.positions, run.reference_positions)]
-    frames = run.frames
-    for name in run.paths:
-        if name != run.task:
-            p = frames[name][:, :3, 3]
-            found.append((p, p + _in_base(run, name, run.errors[name][:, :3])))
-    if run.path_task.reference_frame is not None:
-        p = frames[run.task][:, :3, 3]
-        found[0] = p, p + _in_base(run, run.task, run.position_error)
-    return found
-
-
-def _in_base(run: Run, name: str, vectors: Array) -> Array:
-    """Vectors of shape (N, 3) from the axes of a task's points to the axes of the base frame."""
-    assert run.stack is not None
-    reference = run.stack.follower(name).reference_frame
-    if reference is None:
-        return vectors
-    return np.asarray(np.einsum("kij,kj->ki", frames_of(run.arm, run.q, reference)[:, :3, :3], vectors))
 
 
 def task_jacobians(robot: Robot, q: Array, task: FrameTask) -> Array:

@@ -10,6 +10,7 @@ from signal import SIGINT, default_int_handler, getsignal, signal
 from typing import Any
 
 from .._core import Stop, sweep_chunk
+from . import _lanes  # noqa: F401  # Selects the code of sweep_chunk() in this process.
 
 Result = tuple[Any, list[Any]]  # Outcomes, one for each motion, and the arrays of each motion if requested.
 POLL = 0.05  # Interval between checks for Ctrl-C [s].

@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from .._types import Array
-from ..io import write_whole
+from ..files import write_whole
 from ..motion.run import Run
-from ..motion.task_frames import tracks
+from ..motion.task_errors import tracks
 from ..parameter import Parameter
 from ..skeleton import joint_points
 from .figures import lay_out

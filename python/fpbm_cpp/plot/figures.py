@@ -124,8 +124,6 @@ def compare(runs: Sequence[Run] | Mapping[str, Run], title: str = "", *, dark: b
     ValueError if there is no run.
     """
     named = named_runs(runs)
-    if not named:
-        raise ValueError("runs: must hold at least one run")
     theme, shown = DARK if dark else LIGHT, list(named.values())
     quantities = POSE_TASK if any(run.kind == "pose" for run in shown) else POSITION_TASK
     rows = len(quantities) // 2

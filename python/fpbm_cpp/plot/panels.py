@@ -12,8 +12,7 @@ from matplotlib.ticker import MaxNLocator, MultipleLocator
 from .._types import Array
 from ..arms import Arm
 from ..motion.run import Run
-from ..motion.task_errors import error_parts
-from ..motion.task_frames import tracks
+from ..motion.task_errors import error_parts, tracks
 from ..robots import Robot
 from ..skeleton import joint_labels, joint_points, joint_units, task_frames
 from .lines import draw_lines, envelope, from_zero, head_legend, in_decades, over_time, side_legend, top_legend

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..io import write_whole
+from ..files import write_whole
 from .cases import Result, load, of_figures
 from .claims import Claim, check_claims
 from .report import TOLERANCE, Table, make_figure, make_report, make_tables, rendered, summary

@@ -7,16 +7,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arms import Arm, JointLimits, limits_of
-from ..errors import TuneInterrupted
-from ..motion.run import Paths, Run
+from ..arms import Arm
+from ..joints import JointLimits, limits_of
+from ..motion.run import Run
+from ..motion.run_data import Paths
 from ..motion.simulation import one_path, path_task
 from ..motion.sweeping import Progress, Sweep, reporting, sweep
 from ..parameter import Parameter
 from ..schemes import FPBM
 from ..tasks import Stack
-from .result import Trials, Tuning, joined, sensitivity
+from .result import TuneInterrupted, Tuning
 from .search import Space, front, least, numbers, require_cmaes
+from .trials import Trials, joined, sensitivity
 
 OfRun = Callable[[Run], float]
 

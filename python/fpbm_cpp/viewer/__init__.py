@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, Any
 from numpy.typing import ArrayLike
 
 from .._core import TargetFilter
-from ..arms import Arm, JointLimits
+from ..arms import Arm
 from ..clearance import Clearance
-from ..motion.run import Paths
+from ..joints import JointLimits
+from ..motion.run_data import Paths
 from ..motion.simulation import simulate
 from ..robots import Robot
 from ..schemes import Scheme

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from viser import GuiApi, GuiEvent, GuiSliderHandle, Icon
 
-from ..arms import Arm, JointLimits
+from ..arms import Arm
+from ..joints import JointLimits
 from ..parameter import Parameter, parameters
 from ..robots import Robot
 from ..schemes import SCHEMES, Scheme

@@ -78,8 +78,7 @@ class LiveScene:
         self._passed.append(np.array([frame[:3, 3] for frame in frames]))
         self._trace.points = np.concatenate([nothing, *map(segments, np.array(self._passed).swapaxes(0, 1))])
         if self._shapes is not None and loop.clearance is not None:
-            nearest = None if loop.tick is None else loop.tick.nearest
-            self._shapes.at(loop.clearance, q, None if nearest is None else nearest.pair)
+            self._shapes.at(loop.clearance, q, None if loop.tick is None else loop.tick.nearest)
 
 
 def _handles(server: ViserServer, loop: ServoLoop, size: float) -> list[Handle]:

@@ -13,8 +13,9 @@ from numpy.typing import ArrayLike
 
 from .._core import Status, TargetFilter, Tick, Tracker
 from .._types import Array
-from ..arms import Arm, JointLimits, limits_of
+from ..arms import Arm
 from ..clearance import Clearance
+from ..joints import JointLimits, limits_of
 from ..robots import Robot
 from ..schemes import Scheme
 from ..skeleton import frames_of, length

@@ -10,8 +10,7 @@ from .._core import Nearest
 from .._types import Array
 from ..clearance import Clearance
 from ..motion.run import Run
-from ..motion.task_errors import error_parts
-from ..motion.task_frames import tracks
+from ..motion.task_errors import error_parts, tracks
 from ..skeleton import task_frames
 from ..tasks import PoseTask, PositionTask
 from .frames import in_space, point_of

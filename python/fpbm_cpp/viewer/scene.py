@@ -18,9 +18,9 @@ from viser.transforms import SO3
 from .._core import rotation_vector
 from .._types import Array
 from ..arms import Arm, PlanarArm
-from ..io.mesh_file import find_mesh
 from ..robots import Robot
 from ..skeleton import joint_points, joints_of, length, link_frames
+from ..urdf.mesh_file import find_mesh
 from .frames import in_space
 from .playback import Playback
 from .shapes import Shapes, along, draw_bounds
@@ -169,8 +169,7 @@ class Scene:
             passed = [*playback.frames[: playback.frame(sample) + 1], sample]
             self._path.points = np.concatenate([segments(tip[passed]) for tip, _ in playback.tracks])
             if self._shapes is not None and playback.clearance is not None:
-                nearest = playback.nearest(sample)
-                self._shapes.at(playback.clearance, playback.run.q[sample], None if nearest is None else nearest.pair)
+                self._shapes.at(playback.clearance, playback.run.q[sample], playback.nearest(sample))
 
 
 def set_up(

@@ -5,21 +5,18 @@ from __future__ import annotations
 import os
 import threading
 import webbrowser
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 from numpy.typing import ArrayLike
 from viser import Icon
 
-from .._core import Status, TargetFilter, Tick
+from .._core import Status, Tick
 from .._types import Array
-from ..arms import Arm, JointLimits
-from ..clearance import Clearance
+from ..arms import Arm
 from ..errors import wrong
 from ..robots import Robot
 from ..schemes import Scheme
-from ..task_bounds import TaskBounds
-from ..tasks import Stack
 from .controls import RATE, Controls
 from .live import LiveReadout, StripChart
 from .live_scene import LiveScene
@@ -34,7 +31,8 @@ class Servo(Page):
     For a stack, each frame task has a handle with the name of the task.
 
     Serves from another thread until close(), or until the end of a with block; url is the address of the page.
-    Parameters and errors are as for fpbm_cpp.servo().
+    Parameters and errors are as for fpbm_cpp.servo(); options are the parameters of ServoLoop: task, stack, dt, limits,
+    targets, clearance and bounds.
     """
 
     def __init__(
@@ -43,20 +41,13 @@ class Servo(Page):
         scheme: Scheme,
         q0: ArrayLike,
         *,
-        task: str = "position",
-        stack: Stack | None = None,
-        dt: float = 1e-3,
-        limits: JointLimits | None = None,
-        targets: TargetFilter | Mapping[str, TargetFilter] | None = None,
-        clearance: Clearance | None = None,
-        bounds: Sequence[TaskBounds] = (),
         urdf: str | os.PathLike[str] | None = None,
         host: str = "127.0.0.1",
         port: int = 8080,
         open_browser: bool = False,
+        **options: Any,
     ) -> None:
-        how: dict[str, Any] = {"limits": limits, "targets": targets, "clearance": clearance, "bounds": bounds}
-        self._loop = ServoLoop(arm, scheme, q0, task=task, stack=stack, dt=dt, **how)
+        self._loop = ServoLoop(arm, scheme, q0, **options)
         meshes = None if urdf is None else Meshes(urdf, arm, self._loop.q)
         super().__init__(host, port)
         gui = self._server.gui
@@ -66,7 +57,7 @@ class Servo(Page):
             self._button = gui.add_button("stop", color="red", icon=Icon.HAND_STOP, hint="Stop the arm, or continue")
             start = gui.add_button("back to start", color="gray", hint="Move arm and handles to their start")
             self._chart = StripChart(gui, self._loop)
-            self._controls = Controls(gui, arm, scheme, self._on_change, gains=stack is None)
+            self._controls = Controls(gui, arm, scheme, self._on_change, gains=self._loop.stack is None)
             self._scene = LiveScene(self._server, self._loop, meshes)
             self._button.on_click(lambda _: self.resume() if self._loop.stopped else self.stop())
             start.on_click(lambda _: self.restart())

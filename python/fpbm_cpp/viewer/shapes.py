@@ -7,6 +7,7 @@ from trimesh.creation import capsule as capsule_mesh
 from viser import SceneApi, SceneNodeHandle
 from viser.transforms import SO3
 
+from .._core import Nearest
 from .._types import Array
 from ..arms import Arm
 from ..capsule import Capsule
@@ -17,7 +18,6 @@ from ..skeleton import link_frames
 from ..task_bounds import TaskBounds
 from ..tasks import PositionTask
 from .frames import z_to
-from .gap import nearest_points
 
 BODY, OBSTACLE, GAP = (0, 114, 178), (230, 159, 0), (204, 121, 167)
 FACES = (16, 24)  # Faces of a capsule, along and around its axis.
@@ -49,17 +49,16 @@ class Shapes:
         nothing = np.zeros((0, 2, 3), dtype=np.float32)
         self._gap = scene.add_line_segments("/clear/gap", nothing, GAP, thickness=5.0, thickness_units="screen")
 
-    def at(self, clearance: Clearance, q: Array, pair: tuple[str, str] | None) -> None:
-        """Show the capsules in a posture, obstacles at their present places, and the line between a pair by name."""
+    def at(self, clearance: Clearance, q: Array, nearest: Nearest | None) -> None:
+        """Show the capsules in a posture, obstacles at their present places, and a line between the nearest shapes."""
         frames = link_frames(self._arm, q)
         for link, node in self._links.items():
             node.position, node.wxyz = frames[link, :3, 3], SO3.from_matrix(frames[link, :3, :3]).wxyz
         for node, shape in zip(self._obstacles, clearance.obstacles):
             node.position = centre(shape)
-        ends = None if pair is None else nearest_points(clearance, frames, pair)
-        self._gap.visible = ends is not None
-        if ends is not None:
-            self._gap.points = ends[None].astype(np.float32)
+        self._gap.visible = nearest is not None
+        if nearest is not None:
+            self._gap.points = nearest.points[None].astype(np.float32)
 
 
 def centre(shape: Obstacle) -> Array:

@@ -6,7 +6,7 @@ import numpy as np
 
 from .._core import Tick
 from .._types import Array
-from ..arms import JointLimits
+from ..joints import JointLimits
 
 SECONDS = 10.0
 POINTS = 200  # Points of a curve.

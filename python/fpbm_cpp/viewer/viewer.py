@@ -123,8 +123,7 @@ class Viewer(Page):
 
 def rerun(run: Run, scheme: Scheme, limited: bool) -> Run:
     """The motion of a run under another scheme; if limited, within the run's or the arm's limits. Raises ValueError."""
-    q0 = run.q[0] if len(run.q) else run.status.q
     if limited:
-        return track(run.arm, run.path, scheme, q0, task=run.task, **run.options)
+        return track(run.arm, run.path, scheme, run.q0, task=run.task, **run.options)
     options = {name: run.options[name] for name in ("dt", "hold", "qd0", "stack") if name in run.options}
-    return simulate(run.arm, run.path, scheme, q0, task=run.task, partial=True, **options)
+    return simulate(run.arm, run.path, scheme, run.q0, task=run.task, partial=True, **options)

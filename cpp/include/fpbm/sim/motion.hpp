@@ -1,9 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <type_traits>
+#include <utility>
 
 #include "fpbm/core/mask.hpp"
 #include "fpbm/core/space.hpp"
+#include "fpbm/model/kinematics.hpp"
 #include "fpbm/task/reference.hpp"
 
 namespace fpbm {
@@ -19,7 +22,8 @@ struct Sample {
   typename Space::template Point<Scalar> tip;  ///< f(q) [m, rad]
   Reference<Space, Scalar> reference;
   Vector<Space::kRows, Scalar> error;  ///< x ⊖ f(q) [m, rad]
-  Matrix<Space::kRows, N, Scalar> J;   ///< Task Jacobian at q
+  /// Task Jacobian at q; for a stack, of the first level.
+  std::decay_t<decltype(first_rows(std::declval<const Kinematics<Space, N, Scalar>&>()))> J;
 };
 
 /// Recorder that writes samples row by row into buffers of the caller. Null buffers are skipped.

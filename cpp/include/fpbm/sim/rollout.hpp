@@ -42,6 +42,9 @@ template <typename Recorder, typename Sample>
 /// Integrates an arm with a scheme by RK4 at fixed steps: along a path, then for the time `hold` of the grid with the
 /// reference at rest at the end of the path.
 ///
+/// For a stack, the arm is a RobotTasks, the scheme is a ByLevels, and the path is in the space of the stack. Only the
+/// errors of the first level decide whether the motion follows its reference.
+///
 /// The path is a displacement from the start position of the tip. If damping at a singular posture prevents the tip
 /// from following its path, the motion stops with kTaskLost, whereas a Tracker continues. If the discretisation error
 /// of the tip exceeds 1e-4 of the largest lever arm, the status is kCoarse; this error is an estimate, see TaskWatch.
@@ -122,8 +125,8 @@ RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Pat
                                                   loop.qdd,
                                                   loop.kinematics.tip,
                                                   reference,
-                                                  Space::template difference<Scalar>(reference.x, loop.kinematics.tip),
-                                                  loop.kinematics.J};
+                                                  task_error(loop.kinematics, reference.x),
+                                                  first_rows(loop.kinematics)};
     if (!show(record, sample) || last) break;
     result.status = worse(result.status, RK4::step(derivative, t, grid.dt(), dx, x));
     if (failed(result.status)) break;

@@ -8,6 +8,7 @@
 #include "fpbm/core/mask.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/model/kinematics.hpp"
+#include "fpbm/sim/first_level.hpp"
 #include "fpbm/task/reference.hpp"
 
 namespace fpbm {
@@ -58,8 +59,8 @@ class ErrorWatch {
   static constexpr auto kTruncation = static_cast<Number<Scalar>>(0.05);
 
   bool started_ = false;
-  TaskVector error_ = TaskVector::Zero();
-  TaskVector rate_ = TaskVector::Zero();
+  TaskVector error_ = filled<TaskVector>(M == Eigen::Dynamic ? 0 : M);
+  TaskVector rate_ = error_;
 };
 
 /// Detects the step of a rollout in which the tip leaves its reference, in position and, at acceleration level, in
@@ -72,6 +73,9 @@ class ErrorWatch {
 /// missed.
 template <typename Space, int N, typename Scalar = double>
 class TaskWatch {
+  static constexpr int kRows = kRowsOfFirst<Space, N, Scalar>;
+  using TaskVector = Vector<kRows, Scalar>;
+
  public:
   explicit TaskWatch(const typename Space::template Point<Scalar>& tip)
       : before_(Reference<Space, Scalar>::hold(tip)) {}
@@ -88,15 +92,18 @@ class TaskWatch {
                                                bool damped) noexcept {
     using std::max;
     using std::min;
-    using TaskVector = Vector<Space::kRows, Scalar>;
-    const auto& J = kinematics.J;
+    const auto& J = first_rows(kinematics);
+    const auto rows = [&](const Vector<Space::kRows, Scalar>& twist) -> TaskVector {
+      return twist_of_first(kinematics, twist);
+    };
     const Scalar step = h * state.qd.cwiseAbs().maxCoeff();
     const Scalar largest_entry = J.cwiseAbs().maxCoeff();
     const TaskVector velocity = J.lazyProduct(state.qd);
-    const TaskVector e = Space::template difference<Scalar>(arrived.x, kinematics.tip);
-    const TaskVector ed = reference.xd - velocity;
-    const Scalar travel = Space::template difference<Scalar>(arrived.x, before_.x).norm();
-    const Scalar growth = position_.growth(e, h);
+    const Vector<Space::kRows, Scalar> error = Space::template difference<Scalar>(arrived.x, kinematics.tip);
+    const TaskVector e = rows(error);
+    const TaskVector ed = rows(reference.xd) - velocity;
+    const Scalar travel = rows(Space::template difference<Scalar>(arrived.x, before_.x)).norm();
+    const Scalar growth = position_.growth(e, h) - error_selection_.of_error(kinematics, error);
     Mask<Scalar> follows =
         step <= Scalar(kLargestStep) && position_.follows(growth, e, ed, h, travel, step, largest_entry);
     if (damped) {
@@ -107,10 +114,10 @@ class TaskWatch {
     }
     position_.start_from(e, ed);
     if constexpr (kLevel == Level::kAcceleration) {
-      const TaskVector edd = reference.xdd - J.lazyProduct(qdd) - kinematics.Jd.lazyProduct(state.qd);
-      const Scalar change = (arrived.xd - before_.xd).norm();
-      const TaskVector ed_before = arrived.xd - velocity;
-      const Scalar faster = velocity_.growth(ed_before, h);
+      const TaskVector edd = rows(reference.xdd) - J.lazyProduct(qdd) - first_rates(kinematics).lazyProduct(state.qd);
+      const Scalar change = rows(arrived.xd - before_.xd).norm();
+      const TaskVector ed_before = rows(arrived.xd) - velocity;
+      const Scalar faster = velocity_.growth(ed_before, h) - rate_selection_.of_rate(kinematics, arrived.xd);
       follows = follows && velocity_.follows(faster, ed_before, edd, h, change, step, largest_entry / h);
       if (!damped) {
         made_ += h * made_rate_;
@@ -142,8 +149,10 @@ class TaskWatch {
   Scalar made_{0};       ///< Upper bound on the discretisation error.
   Scalar made_rate_{0};  ///< Upper bound on the discretisation error of the velocity.
   Scalar undamped_error_{0};
-  ErrorWatch<Space::kRows, Scalar> position_;
-  ErrorWatch<Space::kRows, Scalar> velocity_;
+  SelectionGrowth<Space, N, Scalar> error_selection_;
+  SelectionGrowth<Space, N, Scalar> rate_selection_;
+  ErrorWatch<kRows, Scalar> position_;
+  ErrorWatch<kRows, Scalar> velocity_;
   Reference<Space, Scalar> before_;
 };
 

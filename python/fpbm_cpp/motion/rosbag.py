@@ -12,12 +12,12 @@ import numpy as np
 from .._types import Array
 from ..arms import PlanarArm
 from ..errors import extra
-from ..motion.run import Run
 from ..skeleton import task_frames
+from .run_data import RunData
 from .tables import quaternions
 
 
-def to_rosbag(run: Run, directory: str | os.PathLike[str], frame: str, trajectory: bool) -> None:
+def to_rosbag(run: RunData, directory: str | os.PathLike[str], frame: str, trajectory: bool) -> None:
     rosbag2, typesys = (extra(f"rosbags.{part}", "to_rosbag", "ros") for part in ("rosbag2", "typesys"))
     if not len(run.t):
         raise ValueError("run: has no samples: must have at least one: run.status has the cause")
@@ -41,7 +41,7 @@ def to_rosbag(run: Run, directory: str | os.PathLike[str], frame: str, trajector
         shutil.rmtree(part, ignore_errors=True)
 
 
-def _messages(run: Run, types: Any, frame: str, trajectory: bool) -> Iterator[tuple[str, int, Any]]:
+def _messages(run: RunData, types: Any, frame: str, trajectory: bool) -> Iterator[tuple[str, int, Any]]:
     """Topic, time [ns] and message of all messages of a run, in order of time."""
 
     def clock(kind: str, t: int) -> Any:
@@ -68,7 +68,7 @@ def _messages(run: Run, types: Any, frame: str, trajectory: bool) -> Iterator[tu
         yield "/tip_reference", t, pose(t, p_ref, r_ref)
 
 
-def _poses(run: Run, x: Array, reference: bool = False) -> tuple[Array, Array]:
+def _poses(run: RunData, x: Array, reference: bool = False) -> tuple[Array, Array]:
     """Positions in space, and quaternions; for a position task, the arm's orientation, or the reference's identity."""
     if x.ndim == 3:
         return x[:, :3, 3], quaternions(x[:, :3, :3])

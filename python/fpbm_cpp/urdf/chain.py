@@ -15,9 +15,9 @@ from numpy.typing import ArrayLike
 
 from .._core import MAX_DOF, rotation
 from .._types import Array
-from ..arms import NO_BOUNDS, Joint, JointLimits, limited
 from ..errors import ParameterError, UrdfWarning, wrong
-from .urdf_file import ENVELOPE, UrdfJoint, read_robot
+from ..joints import NO_BOUNDS, Joint, JointLimits, limited
+from .file import ENVELOPE, UrdfJoint, read_robot
 
 OWN_RANGE = "give limits=fp.JointLimits(lower=..., upper=...)"
 FREE = f"to move a joint, {OWN_RANGE}"

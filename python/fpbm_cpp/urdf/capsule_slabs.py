@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator
-from itertools import pairwise
 
 import numpy as np
 
 from .._types import Array
 from ..errors import extra
-from ..robots import TreeJoint
+from ..joints import TreeJoint
 from .capsule_fit import enclosing
 from .capsule_gaps import Link, Part, capsules_apart, link_frames, postures, rough_part
 
@@ -20,7 +19,6 @@ STEPS = (0.1, 0.2, 0.5, 1.0)  # Displacements of a capsule that are tried, in ra
 LEAST = 0.1  # Fraction of a part's missing distance that a cut must gain; not tuned.
 SPREAD = 64  # Postures, in addition to the required ones, that decide which pairs are close in all postures.
 ROOM = 1.01  # Required distance [margins]; Clearance accepts a posture with a distance of 1.
-ALIKE = 0.95  # Cosine of the angle between directions that count as equal.
 
 
 class Postures:
@@ -142,31 +140,19 @@ def _best(
     return best
 
 
-def _directions(part: Part) -> list[Array]:
-    """The axis of a part's capsule, its principal axes and its frame's axes, without nearly equal directions."""
-    along = part.fit.b - part.fit.a
-    directions: list[Array] = []
-    for u in (along / max(float(np.linalg.norm(along)), 1e-300), *part.shape.principal_axes(), *np.eye(3)):
-        if np.any(u) and all(abs(u @ other) < ALIKE for other in directions):
-            directions.append(u)
-    return directions
-
-
 def _slabs(part: Part) -> Iterator[list[Part]]:
     """A part, cut in two or into equal slabs."""
-    points = part.shape.points
-    for u in _directions(part):
-        low, high = float(np.min(points @ u)), float(np.max(points @ u))
-        inner = [[place] for place in np.linspace(low, high, PLACES + 1)[1:-1]]
-        for places in [*inner, *(list(np.linspace(low, high, count + 1)[1:-1]) for count in SLABS)]:
-            shapes = [part.shape.between(u, *ends) for ends in pairwise([-np.inf, *places, np.inf])]
-            if all(len(shape.points) for shape in shapes):
+    for u in part.directions(*np.eye(3)):
+        s = part.shape.points @ u
+        halves = [[place] for place in np.linspace(s.min(), s.max(), PLACES + 1)[1:-1]]
+        for places in [*halves, *(list(np.linspace(s.min(), s.max(), count + 1)[1:-1]) for count in SLABS)]:
+            if shapes := part.cut(u, places):
                 yield [rough_part(shape) for shape in shapes]
 
 
 def _moved(part: Part) -> Iterator[list[Part]]:
     """A part with its capsule displaced: behind a flat face, a larger capsule with a farther axis bulges less."""
-    for u in _directions(part):
+    for u in part.directions(*np.eye(3)):
         for step in (*STEPS, *(-step for step in STEPS)):
             a, b = (end + step * part.fit.radius * u for end in (part.fit.a, part.fit.b))
             yield [Part(part.shape, enclosing(a, b, part.shape.points, part.shape.sizes))]

@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from .._core import rotation_vector
 from .._types import Array
 from ..errors import extra
-from ..motion.run import Run
-from ..motion.task_errors import error_parts
+from ..files import write_whole
 from ..skeleton import joint_units
-from . import write_whole
+from .run_data import RunData
+from .task_errors import error_parts
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 Quantity = tuple[str, str, str, NDArray[Any], list[str]]
 
 
-def _quantities(run: Run) -> Iterator[Quantity]:
+def _quantities(run: RunData) -> Iterator[Quantity]:
     """All quantities of a run except the times, in the order of the columns."""
     joints, none = joint_units(run.arm), [""] * 4
     for name, values, per in (("q", run.q, ""), ("qd", run.qd, "/s"), ("qdd", run.qdd, "/s^2")):
@@ -57,7 +57,7 @@ def _quantities(run: Run) -> Iterator[Quantity]:
         yield f"{of}_error_of_{name}", f"{of}_error_of_{name}_{{}}", f"rows of {name}", values, [unit] * len(rows)
 
 
-def _columns(run: Run) -> Iterator[tuple[str, str, NDArray[Any]]]:
+def _columns(run: RunData) -> Iterator[tuple[str, str, NDArray[Any]]]:
     """Name, unit and values of each column."""
     yield "t", "s", run.t
     labels: dict[str, Sequence[str]] = {"joint": run.arm.joint_names, "axis": "xyz", "quaternion": "xyzw", "": " "}
@@ -68,7 +68,7 @@ def _columns(run: Run) -> Iterator[tuple[str, str, NDArray[Any]]]:
             yield column.format(label), unit, component
 
 
-def to_pandas(run: Run) -> "pd.DataFrame":
+def to_pandas(run: RunData) -> "pd.DataFrame":
     pandas = extra("pandas", "to_pandas", "data")
     names, units, columns = zip(*_columns(run))
     frame: pd.DataFrame = pandas.DataFrame(dict(enumerate(columns)))  # Names may be repeated.
@@ -77,7 +77,7 @@ def to_pandas(run: Run) -> "pd.DataFrame":
     return frame
 
 
-def to_csv(run: Run, file: str | os.PathLike[str]) -> None:
+def to_csv(run: RunData, file: str | os.PathLike[str]) -> None:
     names, units, columns = zip(*_columns(run))
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
@@ -87,7 +87,7 @@ def to_csv(run: Run, file: str | os.PathLike[str]) -> None:
     write_whole(Path(file), text.getvalue().encode())
 
 
-def to_xarray(run: Run) -> "xr.Dataset":
+def to_xarray(run: RunData) -> "xr.Dataset":
     xarray = extra("xarray", "to_xarray", "data")
     coordinates = {
         "time": ("time", run.t, {"units": "s"}),

@@ -105,15 +105,15 @@ def outermost(points: Array, radii: Array) -> tuple[Array, Array]:
     return np.vstack([bare, points[balls]]), np.concatenate([np.zeros(len(bare)), radii[balls]])
 
 
-def _spiral() -> Array:
-    """Directions (DIRECTIONS, 3) on a spiral over half the sphere."""
-    i = np.arange(DIRECTIONS)
-    z, turn = 1.0 - (i + 0.5) / DIRECTIONS, np.pi * (1.0 + np.sqrt(5.0)) * i
+def sphere(count: int) -> Array:
+    """Directions on a spiral that fill the sphere evenly."""
+    i = np.arange(count)
+    z, turn = 1.0 - (2 * i + 1.0) / count, np.pi * (1.0 + np.sqrt(5.0)) * i
     flat = np.sqrt(1.0 - z * z)
     return np.column_stack([flat * np.cos(turn), flat * np.sin(turn), z])
 
 
-SPIRAL = _spiral()
+SPIRAL = sphere(2 * DIRECTIONS)[:DIRECTIONS]  # Half of the sphere.
 
 
 def _farthest(points: Array, radii: Array) -> NDArray[np.intp]:

@@ -6,28 +6,25 @@ import os
 import sys
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from itertools import combinations, pairwise
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from .._types import Array
-from ..arms import JointLimits
-from ..capsule import Capsule
-from ..clearance import MARGIN
+from ..capsule import MARGIN, Capsule
 from ..errors import wrong
-from ..robots import TreeJoint
+from ..joints import JointLimits, TreeJoint
 from .capsule_fit import Fit, fit_capsule, fit_cylinder
 from .capsule_gaps import Gaps, Link, Part, link_frames, postures, rough_part
 from .capsule_slabs import clear
-from .urdf import Places, read_places
-from .urdf_shapes import Shape, read_shapes, together
-from .urdf_tree import read_tree
+from .chain import Places, read_places
+from .shapes import Shape, read_shapes, together
+from .tree import read_tree
 
 FAIR = 0.85  # A link gets several capsules if their volume is at most this fraction of the volume of one capsule.
 CUTS = 6  # A shape is cut at the ends of this number of equal parts.
 SEARCHED = 3  # Cuts for which the search runs: those that are best before the search.
-ALIKE = 0.95  # Cosine of the angle between directions that count as equal.
 MANY = 12  # Largest number of shapes of a link for which groups of shapes are tried.
 POSTURES = 64  # Postures in which distances of links are compared.
 MORE = 1  # Additional capsules of a link above per_link, if its capsules are too close to others.
@@ -75,7 +72,7 @@ def capsules_of(
     """
     if isinstance(per_link, bool) or not isinstance(per_link, (int, np.integer)) or per_link < 1:
         raise wrong("per_link", per_link, f" = {per_link!r}: must be a whole number, at least 1")
-    joints, places = _joints(path, tip, base, locked, tips, limits)
+    joints, places = read_joints(path, tip, base, locked, tips, limits)
     shapes = read_shapes(path)
     if not shapes:
         remedy = "must be on at least one link: add <collision>, or give capsules to Clearance()"
@@ -120,7 +117,7 @@ def _progress(total: int) -> Iterator[Callable[[], object]]:
         yield bar.update
 
 
-def _joints(
+def read_joints(
     path: str | os.PathLike[str],
     tip: str | None,
     base: str | None,
@@ -172,11 +169,10 @@ def refine(links: list[Link], joints: list[TreeJoint], most: int, margin: float)
 
 def _halves(part: Part) -> Iterator[list[Part]]:
     """A part, cut in two."""
-    for u in _directions(part):
+    for u in part.directions():
         s = part.shape.points @ u
         for place in np.linspace(s.min(), s.max(), CUTS + 1)[1:-1]:
-            halves = [part.shape.between(u, -np.inf, float(place)), part.shape.between(u, float(place), np.inf)]
-            if all(len(half.points) for half in halves):
+            if halves := part.cut(u, [float(place)]):
                 yield [rough_part(half, search=False) for half in halves]
 
 
@@ -215,33 +211,21 @@ def _fit(shape: Shape) -> Fit:
 
 def _cut(whole: Part, most: int) -> list[Part]:
     """Up to `most` parts between parallel planes, normal to the axis of the capsule or to a principal axis."""
-    return min((_searched(_slabs(whole.shape, u, most)) for u in _directions(whole)), key=_volume)
+    return min((_searched(_slabs(whole, u, most)) for u in whole.directions()), key=_volume)
 
 
-def _directions(part: Part) -> list[Array]:
-    """Normals of cutting planes: the axis of the capsule and the principal axes, without nearly equal directions."""
-    along = part.fit.b - part.fit.a
-    length = float(np.linalg.norm(along))
-    directions = [along / length] if length > 0.0 else []
-    for u in part.shape.principal_axes():
-        if all(abs(u @ other) < ALIKE for other in directions):
-            directions.append(u)
-    return directions
-
-
-def _slabs(whole: Shape, u: Array, most: int) -> list[Part]:
+def _slabs(whole: Part, u: Array, most: int) -> list[Part]:
     """Cut by planes normal to u, each where the total volume of the capsules is least, while the volume decreases."""
-    s = whole.points @ u
+    s = whole.shape.points @ u
     places = np.linspace(s.min(), s.max(), CUTS + 1)[1:-1]
-    bounds = [-np.inf, np.inf]
-    best = [rough_part(whole, search=False)]
+    bounds: list[float] = []
+    best = [rough_part(whole.shape, search=False)]
     for _ in range(most - 1):
         tried = []
         for place in places:
             if place not in bounds:
                 ends = sorted([*bounds, float(place)])
-                shapes = [whole.between(u, low, high) for low, high in pairwise(ends)]
-                if all(len(shape.points) for shape in shapes):
+                if shapes := whole.cut(u, ends):
                     tried.append((ends, [rough_part(shape, search=False) for shape in shapes]))
         if not tried:
             break

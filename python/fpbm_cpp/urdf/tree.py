@@ -11,10 +11,9 @@ from typing import Any
 import numpy as np
 
 from .._core import MAX_DOF
-from ..arms import Joint, JointLimits, limited
 from ..errors import ParameterError, not_one_of, wrong
-from ..robots import NamedFrame, TreeJoint
-from .urdf import (
+from ..joints import Joint, JointLimits, NamedFrame, TreeJoint, limited
+from .chain import (
     FREE,
     Places,
     Tree,
@@ -31,7 +30,7 @@ from .urdf import (
     warn,
     without_range,
 )
-from .urdf_file import Mass, UrdfJoint, read_robot_with_masses
+from .file import Mass, UrdfJoint, read_robot_with_masses
 
 TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 BASES = ("fixed", "planar")

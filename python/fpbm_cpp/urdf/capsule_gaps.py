@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
-from itertools import combinations, product
+from itertools import combinations, pairwise, product
 from math import isfinite
 from typing import NamedTuple
 
 import numpy as np
 
-from .._core import rotation
+from .._core import Robot as CoreRobot
+from .._core import link_frames as core_link_frames
 from .._types import Array
-from ..arms import Joint
-from ..robots import TreeJoint
-from .capsule_fit import Fit, distances, enclosing, fit_capsule, outermost
-from .urdf_shapes import Shape, together
+from ..joints import Joint, TreeJoint
+from .capsule_fit import Fit, distances, enclosing, fit_capsule, outermost, sphere
+from .shapes import Shape, together
 
 PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89, 97, 101, 103, 107)
 # tests/python/test_home_postures.py passes with these values; they are not from a parameter study.
@@ -24,6 +24,7 @@ APART = 1.5  # Links whose hulls are closer than APART margins are not cut: the 
 FIRST = 2  # The first FIRST postures, joints at zero and in the middle: a pair too close in one of them counts.
 OFTEN = 0.25  # A pair counts if it is too close in at least this fraction of the postures.
 OPEN = 3.0  # [rad] or [m], range of an unbounded joint on each side of zero.
+ALIKE = 0.95  # Cosine of the angle between directions that count as equal.
 NORMALS = 200  # Directions of the first search for a gap between hulls.
 SPREADS = 0.1 * 0.6 ** np.arange(8)  # Spread about the best direction in each round of the search.
 
@@ -39,6 +40,20 @@ class Part(NamedTuple):
         body = self.shape.body
         fit = self.fit if body is self.shape else enclosing(self.fit.a, self.fit.b, body.points, body.sizes)
         return Part(self.shape, fit)
+
+    def directions(self, *more: Array) -> list[Array]:
+        """The axis of the capsule, the principal axes and more directions, without nearly equal directions."""
+        along = self.fit.b - self.fit.a
+        found: list[Array] = []
+        for u in (along / max(float(np.linalg.norm(along)), 1e-300), *self.shape.principal_axes(), *more):
+            if np.any(u) and all(abs(u @ other) < ALIKE for other in found):
+                found.append(u)
+        return found
+
+    def cut(self, u: Array, places: Iterable[float]) -> list[Shape]:
+        """The shape, cut by planes normal to u at these places; empty if a piece would have no points."""
+        shapes = [self.shape.between(u, *ends) for ends in pairwise([-np.inf, *places, np.inf])]
+        return shapes if all(len(shape.points) for shape in shapes) else []
 
 
 def rough_part(shape: Shape, search: bool = True) -> Part:
@@ -129,36 +144,21 @@ def _outer(link: Link) -> Shape:
 
 
 def postures(joints: Sequence[Joint], count: int) -> Array:
-    """Positions of all joints (count, n): at zero, in the middle of their ranges, and spread as by spread_posture()."""
+    """Positions of all joints (count, n): at zero, in the middle of their ranges, and spread as by spread_posture().
+
+    link_frames() ignores the positions of mimic joints.
+    """
     low = np.array([each.lower if isfinite(each.lower) else min(-OPEN, each.upper - OPEN) for each in joints])
     high = np.array([each.upper if isfinite(each.upper) else max(OPEN, low[i] + OPEN) for i, each in enumerate(joints)])
     roots = np.sqrt([PRIMES[i % len(PRIMES)] for i in range(len(joints))])
     shares = np.outer(np.arange(1, count - 1), roots) % 1.0
-    q = np.vstack([np.clip(np.zeros(len(joints)), low, high), (low + high) / 2, low + shares * (high - low)])
-    return follow(joints, q)
-
-
-def follow(joints: Sequence[Joint], q: Array) -> Array:
-    """Positions (count, n), with mimic joints set from their leaders."""
-    for i, each in enumerate(joints):
-        if each.mimic is not None:
-            leader, ratio, offset = each.mimic
-            q[:, i] = ratio * q[:, leader] + offset
-    return q
+    return np.vstack([np.clip(np.zeros(len(joints)), low, high), (low + high) / 2, low + shares * (high - low)])
 
 
 def link_frames(joints: Sequence[TreeJoint], q: Array) -> Array:
     """Frames (count, n + 1, 4, 4) of the base and of each joint after its motion, for positions (count, n)."""
-    frames = np.tile(np.eye(4), (len(q), len(joints) + 1, 1, 1))
-    for i, (each, parent) in enumerate((each.joint, each.parent) for each in joints):
-        step = np.tile(np.eye(4), (len(q), 1, 1))
-        axis = np.asarray(each.axis) / np.linalg.norm(each.axis)
-        if each.type == "prismatic":
-            step[:, :3, 3] = np.outer(q[:, i], axis)
-        else:
-            step[:, :3, :3] = [rotation(angle * axis) for angle in q[:, i]]
-        frames[:, i + 1] = frames[:, parent] @ each.placement @ step
-    return frames
+    drives = [i for i, each in enumerate(joints) if each.joint.mimic is None]
+    return core_link_frames(CoreRobot(list(joints), [], 0.0, np.zeros(3)), q[:, drives])
 
 
 def capsules_apart(first: Sequence[Fit], second: Sequence[Fit], poses: Array) -> Array:
@@ -199,18 +199,10 @@ def hulls_apart(first: Shape, second: Shape, pose: Array, enough: float = np.inf
         gaps = np.min(moved @ normals.T - second.sizes[:, None], axis=0) - below
         return float(np.max(gaps)), np.asarray(normals[np.argmax(gaps)])
 
-    fan = _sphere(NORMALS)
+    fan = sphere(NORMALS)
     found = best(fan)
     for spread in SPREADS:
         if found[0] >= enough:
             break
         found = max(found, best(found[1] + spread * fan), key=lambda each: each[0])
     return found[0]
-
-
-def _sphere(count: int) -> Array:
-    """Directions on a spiral that fill the sphere evenly."""
-    i = np.arange(count)
-    z, turn = 1.0 - (2 * i + 1.0) / count, np.pi * (1.0 + np.sqrt(5.0)) * i
-    flat = np.sqrt(1.0 - z * z)
-    return np.column_stack([flat * np.cos(turn), flat * np.sin(turn), z])

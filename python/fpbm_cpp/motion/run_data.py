@@ -1,0 +1,238 @@
+"""A finished motion as data."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._core import Status, advice, failed, message
+from .._types import Array
+from ..arms import Arm
+from ..joints import JointLimits
+from ..paths import Path
+from ..robots import Robot
+from ..schemes import Scheme
+from ..skeleton import task_frames
+from ..tasks import FrameTask, PoseTask, PositionTask, Stack
+from .task_frames import task_jacobians
+
+Paths: TypeAlias = Path | Mapping[str, Path]  # Path of one task, or paths of several tasks by name.
+ARRAYS = ("t", "q", "qd", "qdd", "x", "x_ref", "error")
+LIMITED = ("scale", "saturated", "clearance")  # Arrays of runs within joint limits, or with a clearance.
+OF_STACKS = ("scales", "task_errors")
+
+
+ON_PATH = 1e-3  # Largest distance of the tip from its path in a complete motion [m].
+SHRINK = "Make the path smaller, or choose another start posture q0"
+REMEDIES = {
+    Status.OK: "Give the scheme larger gains (k1 and k2, or k), or shorten dt.",
+    Status.COARSE: "Shorten dt.",
+    Status.DAMPED: f"{SHRINK}, so that the path avoids singular postures.",
+    Status.SLOWED: f"Increase the duration to slow the path. {SHRINK}.",
+    Status.BLOCKED: "Move the path away from the nearest shape or task bound.",
+    Status.RECOVERING: f"{SHRINK}, so that the path is in the workspace.",
+    Status.STALLED: f"{SHRINK}, so that the path is in the workspace.",
+}
+
+
+@dataclass(frozen=True)
+class RunStatus:
+    """End of a motion: status code, time of the last sample [s], and joint positions q [rad], shape (n,).
+
+    If the motion ends at the end of its time, the code is OK, COARSE, DAMPED, SLOWED, BLOCKED or STALLED, and the
+    status is true. distance is the largest distance of the tip from its path [m].
+    """
+
+    code: Status
+    time: float
+    q: Array
+    distance: float = 0.0
+
+    @property
+    def ok(self) -> bool:
+        """Whether the motion ends at the end of its time."""
+        return not failed(self.code)
+
+    @property
+    def left_path(self) -> bool:
+        """Whether the tip was farther than 1 mm from its path."""
+        return self.distance > ON_PATH
+
+    @property
+    def advice(self) -> str:
+        """What to do; empty if the code is OK and the tip did not leave its path."""
+        return REMEDIES.get(self.code, advice(self.code)) if self.ok and self.left_path else advice(self.code)
+
+    def __bool__(self) -> bool:
+        return self.ok
+
+    def __str__(self) -> str:
+        if self.ok and self.left_path:
+            cause = f": at times, {message(self.code)}" if self.code is not Status.OK else ""
+            off = f"the tip was up to {self.distance:.3g} m from its path{cause}. {self.advice}"
+            return f"ended, t = {self.time:g} s; {off}"
+        if self.ok:
+            remark = "" if self.code is Status.OK else f"; at times, {message(self.code)}. {self.advice}"
+            return f"complete, t = {self.time:g} s{remark}"
+        where = np.array2string(self.q, precision=4, separator=", ")
+        return f"stopped after t = {self.time:g} s at q = {where}: {message(self.code)}. {self.advice}"
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class RunData:
+    """The data of a Run."""
+
+    t: Array
+    q: Array
+    qd: Array
+    qdd: Array
+    x: Array
+    x_ref: Array
+    error: Array
+    status: RunStatus
+    arm: Arm | Robot
+    path: Paths
+    scheme: Scheme
+    task: str = "position"
+    options: dict[str, Any] = field(default_factory=dict)
+    scale: Array | None = None
+    saturated: NDArray[np.bool_] | None = None
+    clearance: Array | None = None
+    scales: Array | None = None
+    task_errors: Array | None = None
+    provenance: dict[str, Any] = field(default_factory=dict)
+    function: Callable[..., Any] | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "status", replace(self.status, distance=self.max_error()))
+
+    def max_error(self) -> float:
+        """Largest distance of the tip from its reference [m]."""
+        return float(self.error_norms()[0].max(initial=0.0))
+
+    def max_orientation_error(self) -> float:
+        """Largest angle between the tip's orientation and its reference [rad]; 0 if the orientation is free."""
+        return float(self.error_norms()[1].max(initial=0.0))
+
+    def error_norms(self) -> tuple[Array, Array]:
+        """Distance of the tip from its reference [m] and angle between their orientations [rad], shape (N,) each."""
+        return np.linalg.norm(self.position_error, axis=1), np.linalg.norm(self.orientation_error, axis=1)
+
+    @property
+    def q0(self) -> Array:
+        """Joint positions at the start [rad], shape (n,)."""
+        return np.asarray(self.q[0]) if len(self.q) else self.status.q
+
+    @property
+    def position_error(self) -> Array:
+        """Linear rows of the error [m], shape (N, 2) or (N, 3)."""
+        return self.error[:, : self.positions.shape[1]]
+
+    @property
+    def orientation_error(self) -> Array:
+        """Angular rows of the error [rad], shape (N, 1) or (N, 3); (N, 0) for a position task."""
+        return self.error[:, self.positions.shape[1] :]
+
+    @property
+    def positions(self) -> Array:
+        """Positions of the tip [m], shape (N, 2) or (N, 3): x without the orientation."""
+        return self._positions(self.x)
+
+    @property
+    def reference_positions(self) -> Array:
+        """Positions of the reference [m], shape (N, 2) or (N, 3): x_ref without the orientation."""
+        return self._positions(self.x_ref)
+
+    def _positions(self, x: Array) -> Array:
+        if x.ndim == 3:
+            return x[:, :3, 3]
+        return x[:, :2] if self.kind == "pose" else x
+
+    @property
+    def stack(self) -> Stack | None:
+        """The stack of tasks, or None."""
+        return self.options.get("stack")
+
+    @property
+    def kind(self) -> str:
+        """Kind of the task that follows the path: 'position' or 'pose'."""
+        if self.stack is None:
+            return self.task
+        return "pose" if isinstance(self.path_task, PoseTask) else "position"
+
+    @property
+    def paths(self) -> dict[str, Path]:
+        """The paths by task name; the first path belongs to the task of x, x_ref and error."""
+        given = self.path if isinstance(self.path, Mapping) else {self.task: self.path}
+        return {self.task: given[self.task], **given}
+
+    @property
+    def path_task(self) -> FrameTask:
+        """The task of x, x_ref and error."""
+        return PositionTask() if self.stack is None else self.stack.follower(self.task)
+
+    @property
+    def tips(self) -> list[FrameTask]:
+        """The frames that are drawn as tips: the tip of an arm; the frames of tasks with paths of a Robot."""
+        if not isinstance(self.arm, Robot) or self.stack is None:
+            return [PositionTask()]
+        return [self.stack.follower(name) for name in self.paths]
+
+    @property
+    def frames(self) -> dict[str, Array]:
+        """For a stack: the frame of each frame task by name, in the base frame [m], shape (N, 4, 4); else empty."""
+        tasks = self.stack.tasks if self.stack is not None else ()
+        return {task.name: task_frames(self.arm, self.q, task) for task in tasks if isinstance(task, FrameTask)}
+
+    @property
+    def errors(self) -> dict[str, Array]:
+        """For a stack: the error of each task by name [m, rad], one row per sample, as tick.errors; otherwise empty."""
+        if self.stack is None or self.task_errors is None:
+            return {}
+        sizes = self.stack.error_sizes(self.arm.dof)
+        parts = np.split(self.task_errors, np.cumsum(sizes)[:-1], axis=1)
+        return {task.name: part for task, part in zip(self.stack.tasks, parts)}
+
+    @property
+    def limits(self) -> JointLimits:
+        """The joint limits given to track(); otherwise the limits of the arm."""
+        return self.options.get("limits") or self.arm.limits
+
+    def manipulability(self) -> Array:
+        """sqrt(det(J J')) of the tip, shape (N,): 0 in a singular posture (Yoshikawa, 1985).
+
+        For a Robot, J has the rows of all tasks that follow a path.
+        """
+        J = self.jacobians()
+        return np.asarray(np.sqrt(np.maximum(np.linalg.det(J @ J.transpose(0, 2, 1)), 0.0)))
+
+    def jacobians(self) -> Array:
+        """Jacobian of the tip at each sample, shape (N, m, n); for a Robot, of all tasks that follow a path."""
+        arm = self.arm
+        if isinstance(arm, Robot):
+            return np.concatenate([task_jacobians(arm, self.q, task) for task in self.tips], axis=1)
+        return np.array([arm.jacobian(q, task=self.kind) for q in self.q]).reshape(-1, self.error.shape[1], arm.dof)
+
+    def arrays(self) -> dict[str, Any]:
+        """All arrays by name; the arrays of limits, a clearance and a stack only if the run has them."""
+        arrays = {name: getattr(self, name) for name in (*ARRAYS, *LIMITED, *OF_STACKS)}
+        return {name: np.asarray(array) for name, array in arrays.items() if array is not None}
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, RunData) and self._key() == other._key()
+
+    def _key(self) -> tuple[Any, ...]:
+        """Key for comparisons."""
+        arrays = {name: (array.shape, array.dtype, array.tobytes()) for name, array in self.arrays().items()}
+        status = self.status.code, self.status.time, self.status.q.tobytes()
+        return self.arm, self.path, self.scheme, self.task, self.options, status, arrays
+
+    def __repr__(self) -> str:
+        return (
+            f"<Run of {len(self.t)} samples: {self.scheme!r} on {self.arm} along {self.path!r}; "
+            f"largest tip error {self.max_error():.3g} m; {self.status}>"
+        )
