@@ -15,7 +15,7 @@ namespace {
 
 constexpr int N = Eigen::Dynamic;
 constexpr int kSeconds = 40;
-/// Number of targets for each arm. docs/realtime.md has the results of 144 targets.
+/// Number of targets for each arm (docs/limits.md, Measurements).
 const int kTargets = trials(6, 3);
 
 /// The limits of an arm, reduced to finite bounds for each joint.

@@ -102,7 +102,7 @@ TEST(Outside, joints_stop_on_request) {
                             Vector<Eigen::Dynamic>(kReady), options);
     const auto hold = Reference<Position<3>>::hold(tracker.tip());
     tracker.stop();
-    const double slow = delay == 0 ? kTick : 1.5 * 0.0243;  // D + D/2, D = 24.3 ms: docs/realtime.md.
+    const double slow = delay == 0 ? kTick : 1.5 * 0.0243;  // D + D/2, D = 24.3 ms: docs/measured.md.
     for (std::uint32_t seed = 0; seed < 500; ++seed) {
       Random random(seed);
       const auto joint = static_cast<Eigen::Index>(seed % 7);

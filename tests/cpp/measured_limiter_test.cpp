@@ -130,7 +130,7 @@ struct Loop {
   }
 };
 
-/// The table of docs/realtime.md: gain margins at the declared age, and the largest stable age. Up to the declared age,
+/// The table of docs/measured.md: gain margins at the declared age, and the largest stable age. Up to the declared age,
 /// no loop overshoots except the filtered loop, even if the accelerations of the robot are 1.28 times the commanded
 /// accelerations.
 TEST(MeasuredLimiter, has_stability_margins) {

@@ -157,7 +157,7 @@ TEST(PostureApproach, needs_at_most_twice_the_least_time_at_velocity_level) {
 }
 
 /// Largest error of the tip [m]: about twice the error of the motions below, 2.2e-5 m at velocity level and 3.4e-8 m at
-/// acceleration level. The integration of a tick causes this error (docs/tasks.md, Limitations).
+/// acceleration level. The integration of a tick causes this error (docs/priority.md, Limitations).
 constexpr double kTipError = 5e-5;
 
 /// The posture on the second level: the tip stays, and the joints reach a posture with the same tip.

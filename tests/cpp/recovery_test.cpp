@@ -20,7 +20,7 @@ namespace {
 constexpr int N = Eigen::Dynamic;
 constexpr double kTick = 1e-3;
 
-/// For each arm, level and type of motion. FPBM_MOTIONS=40 gives the numbers of docs/realtime.md.
+/// For each arm, level and type of motion. FPBM_MOTIONS=40 gives the numbers of docs/recovery.md.
 [[nodiscard]] int motions() {
   const char* given = std::getenv("FPBM_MOTIONS");
   return given != nullptr ? std::atoi(given) : trials(2);
@@ -146,7 +146,7 @@ TEST(Recovery, brings_arms_back_at_velocity_level) {
   expect_return(Velocity{});
 }
 
-/// With unreachable targets, all arms stop, except one of 80 UR10e (docs/realtime.md, Unreachable targets). The
+/// With unreachable targets, all arms stop, except one of 80 UR10e (docs/recovery.md, Unreachable targets). The
 /// number of recoveries is printed.
 TEST(Recovery, leaves_arms_at_rest_while_the_target_is_unreachable) {
   for (const Subject& subject : subjects()) {

@@ -70,8 +70,8 @@ TEST(SerialArm, jacobians_are_derivatives) {
   for (const int dof : {1, 3, 9, kMaxDof}) expect_derivatives_of_random_chains<Eigen::Dynamic>(dof);
 }
 
-/// Column i of Jd is [wᵢ × lᵢ + aᵢ × uᵢ; wᵢ × aᵢ], where column i of J is [lᵢ; aᵢ] (docs/equations.md, "Time derivative
-/// of J"). J is computed from the arm at q.
+/// Column i of Jd is [wᵢ × lᵢ + aᵢ × uᵢ; wᵢ × aᵢ], where column i of J is [lᵢ; aᵢ] (docs/kinematics.md, "Time
+/// derivative of J"). J is computed from the arm at q.
 template <int N>
 void expect_rate_from_columns(int dof) {
   Random random(static_cast<std::uint32_t>(dof));

@@ -31,7 +31,7 @@ using Velocity = std::integral_constant<Level, Level::kVelocity>;
   return WMVN<N>(Vector<N>(Vector<N>::Ones(n)), 5.0);
 }
 
-/// Number of motions of each test. FPBM_MOTIONS=450 gives the numbers of docs/realtime.md.
+/// Number of motions of each test. FPBM_MOTIONS=450 gives the numbers of docs/recovery.md.
 [[nodiscard]] int motions(int few) {
   const char* given = std::getenv("FPBM_MOTIONS");
   return given != nullptr ? std::atoi(given) : trials(few);

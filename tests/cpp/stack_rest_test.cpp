@@ -199,7 +199,7 @@ void expect_rest(int most) {
 TEST(StackRest, follows_constant_targets_by_acceleration) {
   expect_rest<Level::kAcceleration>(0);
 }
-/// One stack slowly approaches its target near a singular posture (docs/tasks.md, Limitations).
+/// One stack slowly approaches its target near a singular posture (docs/priority.md, Limitations).
 TEST(StackRest, follows_constant_targets_by_velocity) {
   expect_rest<Level::kVelocity>(1);
 }

@@ -517,7 +517,7 @@ void expect_to_keep_bounds(const std::string& name, const Chain<>& chain, const 
   }
   std::printf("%s: %d motions, bounds exceeded by %.1e, %d not at rest\n", name.c_str(), motions, worst, moving);
   EXPECT_LT(worst, 1e-9);
-  EXPECT_LE(moving, motions / 30);  // 1 of all 300 motions (docs/tasks.md).
+  EXPECT_LE(moving, motions / 30);  // 1 of all 300 motions (docs/priority.md).
 }
 
 TEST(Stack, keeps_every_bound_and_comes_to_rest_by_acceleration) {
@@ -642,7 +642,7 @@ TEST(Stack, reports_the_stopped_level) {
 }
 
 /// The angle of an axis to its target satisfies θ̈ + k₁θ̇ + k₂θ = 0, while lower levels rotate the frame about the axis
-/// (docs/equations.md, "Axis of a frame").
+/// (docs/kinematics.md, "Axis of a frame").
 TEST(Stack, no_rotation_about_an_axis_disturbs_the_axis) {
   const TaskGains<> gains(10.0, 25.0);
   const Vector<7> q0{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785};

@@ -19,7 +19,7 @@ enum class Pairs : unsigned char {
 };
 
 /// Checks by conservative advancement (Mirtich 1996) whether all pairs keep their margin along a stopping trajectory:
-/// docs/clearance.md, "Proof".
+/// docs/clearance_proof.md, "Proof".
 ///
 /// Each step along the trajectory has the length that the lower bounds on all gaps allow. A pair whose lower bound
 /// keeps the margin to the end of the trajectory is not checked again.
@@ -120,8 +120,8 @@ class Advancement {
   };
 
   /// Fraction of the trajectory, at most the fraction `remaining`, in which the pair is proved to keep its margin: the
-  /// smallest root of the lower bounds on its gaps (docs/clearance.md, "Proof"). If no fraction is proved, the result
-  /// is not positive. obstacle: displacement bound of the second shape if it is a moving obstacle [m].
+  /// smallest root of the lower bounds on its gaps (docs/clearance_proof.md, "Proof"). If no fraction is proved, the
+  /// result is not positive. obstacle: displacement bound of the second shape if it is a moving obstacle [m].
   [[nodiscard]] static Scalar proved_fraction(const Clearance& clearance, const Placement& placed,
                                               const ShapePair& pair, const Nearest<Scalar>& nearest,
                                               const Motion& motion, const DisplacementBound<Scalar>& bound,

@@ -10,7 +10,7 @@
 namespace fpbm {
 
 /// Bounds on the displacement of a point of a body, after the fraction t of a stopping trajectory [m]
-/// (docs/clearance.md, "Proof"). The displacement of the joints is t·p + r with |r| ≤ e, where p is
+/// (docs/clearance_proof.md, "Proof"). The displacement of the joints is t·p + r with |r| ≤ e, where p is
 /// JointDisplacement::line, and e is JointDisplacement::deviation. The bounds on the point are
 ///
 ///   displacement:                                        at most d₀ + d₁t

@@ -9,7 +9,7 @@ namespace fpbm {
 /// Stopping trajectory of the drives (StopDisplacement) as displacements of all joints of a robot [rad or m]:
 /// s·line + t·ramp_correction + o, where s and t increase from 0 to 1, and low ≤ o ≤ high.
 ///
-/// The displacement r = t·ramp_correction + o is the deviation from the straight line: docs/clearance.md, "Algorithm".
+/// The displacement r = t·ramp_correction + o is the deviation from the straight line: docs/clearance_proof.md.
 template <typename Clearance>
 struct JointDisplacement {
   using Scalar = typename Clearance::Scalar;

@@ -9,7 +9,7 @@
 
 namespace fpbm {
 
-/// Bounds on the displacement of points of links by each joint, valid in every posture (docs/clearance.md, "Near
+/// Bounds on the displacement of points of links by each joint, valid in every posture (docs/clearance_proof.md, "Near
 /// pairs").
 template <typename Scalar = double>
 class Levers {

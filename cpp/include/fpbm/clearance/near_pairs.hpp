@@ -10,7 +10,7 @@
 
 namespace fpbm {
 
-/// Near pairs of a clearance: the pairs that a motion can bring closer than the margin (docs/clearance.md, "Near
+/// Near pairs of a clearance: the pairs that a motion can bring closer than the margin (docs/clearance_proof.md, "Near
 /// pairs").
 ///
 /// A lower bound on the distance of each pair is kept from tick to tick. From one posture to the next, this bound

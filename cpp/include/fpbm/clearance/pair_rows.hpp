@@ -12,7 +12,7 @@
 
 namespace fpbm {
 
-/// Bounds on the next motion, for the pairs that are near enough to need bounds (docs/clearance.md, "Rows").
+/// Bounds on the next motion, for the pairs that are near enough to need bounds (docs/clearance_proof.md, "Rows").
 ///
 /// Let s be the gap of a pair, g its gradient with respect to the drives, n the normal from the second shape to the
 /// first, and v the velocity of an obstacle. After the tick, the gap must satisfy

@@ -7,8 +7,8 @@
 
 namespace fpbm {
 
-/// Planes that separate two shapes, all with the normal n (docs/clearance.md, "Proof"). n is fixed to the last common
-/// link of the chains to both shapes.
+/// Planes that separate two shapes, all with the normal n (docs/clearance_proof.md, "Proof"). n is fixed to the last
+/// common link of the chains to both shapes.
 ///
 /// Let a be an end of the axis of the first capsule, and b an end of the axis of the second capsule. The gap of a and b
 /// is (n·a − radius of the first) − (n·b + radius of the second). The smallest gap is a lower bound on the distance of

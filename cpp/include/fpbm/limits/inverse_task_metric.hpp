@@ -8,7 +8,7 @@
 
 namespace fpbm {
 
-/// The matrix B of RowProjection for the nearest motion that satisfies rows (docs/clearance.md, Algorithm, Rows):
+/// The matrix B of RowProjection for the nearest motion that satisfies rows (docs/clearance_proof.md, Rows):
 ///
 ///   min ‖J(u − u₀)‖²_A + μ‖u − u₀‖²   where g_k·u ≤ b_k,   ‖x‖²_A = xᵀAx,   B = μA⁻¹.
 ///

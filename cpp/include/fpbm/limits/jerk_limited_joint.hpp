@@ -17,7 +17,7 @@ struct Interval {
   Scalar high;
 };
 
-/// A joint with a bound J on jerk, in a loop of ticks of length h (docs/limits.md, Bounds on jerk).
+/// A joint with a bound J on jerk, in a loop of ticks of length h (docs/tick.md, Bounds on jerk).
 ///
 /// The acceleration u is constant during a tick. The jerk is (u − u₋)/h, where u₋ is the acceleration of the previous
 /// tick. A state (q, q̇, u) is viable toward the upper end if the velocity bound and the envelope hold while the
@@ -112,7 +112,7 @@ struct JerkLimitedJoint {
     return fastest * (longest + envelope.delay + fastest * envelope.softness / Scalar(2));
   }
 
-  /// Whether a state satisfies the two conditions of docs/limits.md, Bounds on jerk, toward one end: w + a²/2J ≤ v for
+  /// Whether a state satisfies the two conditions of docs/tick.md, Bounds on jerk, toward one end: w + a²/2J ≤ v for
   /// a > 0, up to `slack` [rad/s], and G ≤ 0 (VelocityEnvelope::excess()). w is the velocity of the state, a its
   /// acceleration, and v the bound on the velocity.
   [[nodiscard]] bool is_viable_toward(const VelocityEnvelope<kLevel, Scalar>& envelope, const AxisState<Scalar>& at,
@@ -129,7 +129,7 @@ struct JerkLimitedJoint {
   static constexpr int kExactRounds = 20;  ///< Twice the iterations after which the error is round-off.
 
   /// Largest acceleration in the interval `some` after which the state is viable toward one end: the state satisfies
-  /// the bound on velocity and G ≤ 0 (docs/limits.md, Bounds on jerk). q and qd increase toward this end. rounds:
+  /// the bound on velocity and G ≤ 0 (docs/tick.md, Bounds on jerk). q and qd increase toward this end. rounds:
   /// largest number of iterations of the search for G = 0.
   ///
   /// If no acceleration leads to a viable state, returns some.low. Exception: a joint that would exceed the envelope

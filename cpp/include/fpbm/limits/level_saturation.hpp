@@ -9,8 +9,8 @@
 
 namespace fpbm {
 
-/// Resolves task levels J_k u = b_k in strict priority, within a box and further rows g·u ≤ b (docs/limits.md, Several
-/// tasks in strict priority). u₀ = rest, and for each level
+/// Resolves task levels J_k u = b_k in strict priority, within a box and further rows g·u ≤ b (docs/priority.md, Task
+/// levels in your own loop). u₀ = rest, and for each level
 ///
 ///   d = u_{k−1} + Z_{k−1} (J_k Z_{k−1})⁺ (b_k − J_k u_{k−1})
 ///   u_k = u_{k−1} + s_k (d − u_{k−1}) + Z_k γ  within the bounds,   s_k ∈ [0, 1] as large as possible,
@@ -18,8 +18,8 @@ namespace fpbm {
 /// where Z_k is a basis of the null space of J₁ … J_k (LevelSpace). With the null-space motion Z_k γ, other joints
 /// compensate for joints on their bounds (NullSpaceSaturation). u_k keeps every bound that rest keeps. J_i u of a
 /// higher level i changes by round-off error only. s_k is the optimum of the linear program in s_k and γ. If the higher
-/// levels contradict a task, d is the least-squares solution, and s_k scales the step from u_{k−1} to d. docs/limits.md
-/// has the proofs.
+/// levels contradict a task, d is the least-squares solution, and s_k scales the step from u_{k−1} to d.
+/// docs/priority.md has the proofs.
 template <int N, typename Scalar = double, int P = 0>
 class LevelSaturation {
  public:

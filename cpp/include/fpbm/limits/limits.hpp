@@ -194,7 +194,7 @@ class Limits {
     box.upper(i) = motions.high;
   }
 
-  /// Motions of joint i at velocity w if its jerk is unbounded (docs/limits.md, Position, velocity and acceleration).
+  /// Motions of joint i at velocity w if its jerk is unbounded (docs/tick.md, Position, velocity and acceleration).
   [[nodiscard]] Interval<Scalar> motions_of(Eigen::Index i, Scalar q, Scalar w) const noexcept {
     const Scalar v = bounds_.velocity(i);
     const Scalar most = w + bounds_.acceleration(i) * tick_;
@@ -272,7 +272,7 @@ class Limits {
   Envelopes lower_;               ///< For −q.
   Eigen::Index jerk_bounds_ = 0;  ///< Number of joints with a bound on jerk.
 
-  /// c J/A² of a joint with a bound on jerk and without a given envelope (docs/limits.md, Bounds on jerk). At least 1
+  /// c J/A² of a joint with a bound on jerk and without a given envelope (docs/tick.md, Bounds on jerk). At least 1
   /// is necessary. With 2, a stop along the envelope needs jerks of at most A²/c = J/2.
   static constexpr Scalar kOffset = Scalar(2);
 };

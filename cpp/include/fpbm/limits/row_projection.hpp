@@ -12,7 +12,7 @@
 
 namespace fpbm {
 
-/// Nearest motion to a desired motion u₀ that satisfies the rows g_k·u ≤ b_k (docs/clearance.md, Algorithm, Rows):
+/// Nearest motion to a desired motion u₀ that satisfies the rows g_k·u ≤ b_k (docs/clearance_proof.md, Rows):
 ///
 ///   min (u − u₀)ᵀ H (u − u₀)   where g_k·u ≤ b_k,   H = JᵀB⁻¹J + I.
 ///

@@ -13,8 +13,8 @@
 
 namespace fpbm {
 
-/// Saturates a desired motion u* level by level, each level in the null space of the higher levels (docs/limits.md,
-/// Several tasks in strict priority):
+/// Saturates a desired motion u* level by level, each level in the null space of the higher levels (docs/priority.md,
+/// Levels within limits):
 ///
 ///   v = u* − u_{k−1},   p = Z Zᵀ v,   d = u_{k−1} + p + Z (J_k Z)⁺ J_k (v − p),   Z = Z_{k−1}
 ///   u_k = u_{k−1} + s_k (d − u_{k−1}) + Z_k γ  within the bounds,   s_k ∈ [0, 1] as large as possible.

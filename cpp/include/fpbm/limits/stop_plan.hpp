@@ -22,7 +22,7 @@ struct StopDisplacement {
   Vector<N, Scalar> high;             ///< ≥ 0
   /// Velocities in which the motion begins [rad/s]: before the last tick, or in the last tick at velocity level, where
   /// the velocities of a tick are constant. s·line + t·ramp_correction is a combination of `start_velocity` and
-  /// −ramp_correction with non-negative coefficients (docs/clearance.md, "First-order terms").
+  /// −ramp_correction with non-negative coefficients (docs/clearance_proof.md, "First-order terms").
   Vector<N, Scalar> start_velocity;
 
   /// Displacement of n joints at rest.
@@ -32,7 +32,7 @@ struct StopDisplacement {
   }
 };
 
-/// Stopping trajectory from a viable state, known in closed form until rest (docs/clearance.md, Algorithm, Stopping
+/// Stopping trajectory from a viable state, known in closed form until rest (docs/clearance_proof.md, Stopping
 /// trajectory).
 ///
 /// In the first phase, the ramp, all joints reduce their accelerations to zero. In the second phase, all joints brake

@@ -10,7 +10,7 @@ namespace fpbm {
 
 /// Braking envelope: bound on a joint's velocity toward one end of its range, −c + √(2d (end − q)) with an offset c and
 /// a deceleration d, in coordinates that increase toward this end. The envelope is zero at r = end − c²/2d
-/// (docs/limits.md, Position, velocity and acceleration).
+/// (docs/tick.md, Position, velocity and acceleration).
 ///
 /// With a small offset, the envelope is the velocity from which the joint can still stop before r. An envelope of a
 /// manufacturer is a bound on velocity that depends on position (Franka's "−0.30 + √(12 (2.75010 − q))").
@@ -42,7 +42,7 @@ struct VelocityEnvelope {
   }
 
   /// Largest velocity w⁺ after a tick of length h that the envelope admits at the position q⁺ after the tick: the root
-  /// of w⁺ (w⁺/d + 2c/d) = 2 (r − q⁺), where q⁺ = q + h (w + w⁺)/2, or q + h w⁺ at velocity level (docs/limits.md,
+  /// of w⁺ (w⁺/d + 2c/d) = 2 (r − q⁺), where q⁺ = q + h (w + w⁺)/2, or q + h w⁺ at velocity level (docs/tick.md,
   /// Position, velocity and acceleration).
   ///
   /// Beyond r, the mirrored law applies: w⁺ is negative, and −w⁺ is the velocity from which the joint can still stop at
@@ -59,7 +59,7 @@ struct VelocityEnvelope {
     return twice_distance / (sqrt(lag * lag + abs(twice_distance) * softness) + lag);
   }
 
-  /// Largest G = q̇²/2d + q̇ c/d + q − r of a stop with the jerk −J (docs/limits.md, Bounds on jerk). G ≤ 0 within the
+  /// Largest G = q̇²/2d + q̇ c/d + q − r of a stop with the jerk −J (docs/tick.md, Bounds on jerk). G ≤ 0 within the
   /// envelope.
   ///
   /// from: q − r, q̇ and the acceleration of a state. G is largest at the acceleration −b = −d q̇/(q̇ + c). If J ≥ d²/c,

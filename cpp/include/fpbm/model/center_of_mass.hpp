@@ -22,7 +22,7 @@ void require_mass(const Robot& robot) {
 /// The links have masses m_k at c_k, and m = Σ m_k. Joint i moves links of the total mass M_i and the mass moment
 /// s_i = Σ m_k c_k. Column i of J is z × (s_i − M_i p_i)/m for a revolute joint with the axis z through p_i. For a
 /// prismatic joint along z, column i is z M_i/m. J̇ is the derivative of J, with ż = w × z, where w is the angular
-/// velocity of link i + 1 (docs/equations.md, Time derivative of J).
+/// velocity of link i + 1 (docs/kinematics.md, Time derivative of J).
 template <int N, typename Scalar, int Joints>
 void center_of_mass(const Robot<N, Scalar, Joints>& robot, const RobotState<N, Scalar, Joints>& state,
                     Vector<3, Scalar>& centre, Vector<3, Scalar>& velocity, Matrix<3, N, Scalar>& J,

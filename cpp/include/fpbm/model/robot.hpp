@@ -133,7 +133,7 @@ class Robot {
   ///
   /// Column i of J is [l; a] = [z × (p − pᵢ); z] for a revolute joint, and [z; 0] for a prismatic joint. Column i of J̇
   /// is [wᵢ × l + a × uᵢ; wᵢ × a], where wᵢ is the angular velocity of link i + 1, and uᵢ = Σ_{j>i} q̇ⱼ lⱼ
-  /// (docs/equations.md, Time derivative of J). The columns of joints that do not move the link are 0. J̇ is 0 if the
+  /// (docs/kinematics.md, Time derivative of J). The columns of joints that do not move the link are 0. J̇ is 0 if the
   /// state has no velocities.
   template <typename F>
   [[gnu::always_inline]] Vector3 columns(const State& state, int link, const Vector3& p, const F& f) const noexcept {

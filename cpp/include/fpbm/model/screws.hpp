@@ -15,7 +15,7 @@ namespace fpbm {
 ///
 /// Column i of J is [zᵢ × (p − pᵢ); zᵢ] for a revolute joint with the axis zᵢ through pᵢ and the tip at p, and [zᵢ; 0]
 /// for a prismatic joint along zᵢ. If this column is [lᵢ; aᵢ], column i of Jd is [wᵢ × lᵢ + aᵢ × uᵢ; wᵢ × aᵢ], with wᵢ
-/// = Σ_{j≤i} q̇ⱼ aⱼ and uᵢ = Σ_{j>i} q̇ⱼ lⱼ (docs/equations.md, Time derivative of J). Joints are computed in pairs.
+/// = Σ_{j≤i} q̇ⱼ aⱼ and uᵢ = Σ_{j>i} q̇ⱼ lⱼ (docs/kinematics.md, Time derivative of J). Joints are computed in pairs.
 template <int N, typename Scalar>
 class Screws {
  public:

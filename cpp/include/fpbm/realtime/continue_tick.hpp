@@ -27,9 +27,9 @@ template <typename Scalar>
   }
 }
 
-/// Prepares the middle of a tick that continues the acceleration of the previous tick (docs/equations.md, A tick with
-/// one acceleration): J ← J + h'J̇, and the acceleration of the reference changes, so that the law of a scheme with the
-/// gains k₁ and k₂,
+/// Prepares the middle of a tick that continues the acceleration of the previous tick (docs/tick.md, A tick,
+/// Acceleration level): J ← J + h'J̇, and the acceleration of the reference changes, so that the law of a scheme with
+/// the gains k₁ and k₂,
 ///
 ///   J qdd = xdd − J̇ qd + k₁ (xd − J qd) + k₂ (x ⊖ f(q)),
 ///
@@ -83,7 +83,7 @@ void continue_tick(Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics, Ref
 ///
 ///   (J + hJ̇/2) u = xd + (1 − e^(−kh))/h e + J u' + hJ̇u'/4 − 2(x' − x₀)/h.
 ///
-/// The error then decays by e^(−kh) in each tick, up to terms of h⁴ (docs/equations.md, A tick at velocity level).
+/// The error then decays by e^(−kh) in each tick, up to terms of h⁴ (docs/tick.md, A tick, Velocity level).
 /// error: e at the start of the tick. moved: x' − x₀, displacement of the tip to the middle. In float, 2(x' − x₀)/h is
 /// mostly round-off error. Therefore, J u' − hJ̇u'/4 is used instead.
 template <typename Space, int N, typename Scalar>

@@ -16,7 +16,7 @@ namespace fpbm {
 /// moved toward the tip until the error equals error_bound, separately for the position and the orientation (Buss
 /// 2004). For the joints of a posture task, see reduce() and JointApproach. The integral of the error, times
 /// integral_gain, is added to the acceleration of the reference, or to the velocity at velocity level
-/// (docs/realtime.md, Integral of the error).
+/// (docs/measured.md, Integral of the error).
 template <Level kLevel, typename Space, typename Scalar = double>
 class Correction {
  public:

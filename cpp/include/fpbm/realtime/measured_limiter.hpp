@@ -21,13 +21,13 @@ inline void require_measured_delay(int delay) {
   }
 }
 
-/// Joint limits of an arm whose measured state is up to d ticks old (docs/realtime.md, Delay of measured states). The
+/// Joint limits of an arm whose measured state is up to d ticks old (docs/tick.md, Delay of measured states). The
 /// age may be unknown and may vary.
 ///
 /// Uses the bounds on velocity and the braking envelopes of Limits with a longer tick H. Toward each bound, the gain of
 /// the feedback on the measured velocity is β ≤ g/h, where g = dᵈ/(d+1)ᵈ⁺¹ is the largest gain for which
 /// q̇ₖ₊₁ = q̇ₖ − g q̇ₖ₋d decays without oscillation. With the offset from offset(), the arm approaches the envelopes
-/// without overshoot. docs/realtime.md derives H, the offset and their stability margins.
+/// without overshoot. docs/tick.md derives H and the offset, and docs/measured.md has the stability margins.
 ///
 /// A bound J on jerk limits the change from one command to the next. If H ≥ A/J, the accelerations that keep the other
 /// bounds never need a larger jerk (for the envelopes, a measured result).
@@ -98,7 +98,7 @@ class MeasuredLimiter {
   }
 
  private:
-  /// H (docs/realtime.md, Delay of measured states, The tick H). The gain of the velocity feedback is
+  /// H (docs/tick.md, Delay of measured states, The tick H). The gain of the velocity feedback is
   /// β = (T + H)/(H (T + H/2)), at most 1.172/H.
   [[nodiscard]] static Scalar horizon(const JointLimits& limits, int delay) {
     const auto d = static_cast<Scalar>(delay);
@@ -111,7 +111,7 @@ class MeasuredLimiter {
   }
 
   /// T, offset divided by deceleration of the envelopes of Limits with the tick H. With T = D + H²/2(D − H), the arm
-  /// keeps the envelopes of offset D (docs/realtime.md, Delay of measured states, Envelopes).
+  /// keeps the envelopes of offset D (docs/tick.md, Delay of measured states, Envelopes).
   [[nodiscard]] static Scalar offset(Scalar D, Scalar H) noexcept { return D + H * H / (Scalar(2) * (D - H)); }
 
   /// Limits with the tick H that keep the envelopes of the given limits, but have no bounds on jerk.

@@ -12,7 +12,7 @@
 
 namespace fpbm {
 
-/// Moves a stalled arm to a posture from which its target is reachable (docs/realtime.md, Unreachable targets).
+/// Moves a stalled arm to a posture from which its target is reachable (docs/recovery.md, Unreachable targets).
 ///
 /// An arm that followed its target out of the workspace and back may stop away from a reachable target: in a singular
 /// posture with Jᵀe = 0, or with joints at the ends of their ranges. Feedback of the tip cannot leave a local minimum

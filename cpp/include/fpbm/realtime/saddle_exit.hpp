@@ -55,7 +55,7 @@ template <typename... Levels, int N, typename Scalar>
   return FirstLevel<M, N, Scalar>{level.J, level.Jd, error, filled<Vector<M, Scalar>>(level.rows(), Scalar(1))};
 }
 
-/// Posture near a saddle point of the task error (docs/realtime.md, Singular postures at rest).
+/// Posture near a saddle point of the task error (docs/recovery.md, Singular postures at rest).
 template <int N, typename Scalar>
 struct SaddleExit {
   Vector<N, Scalar> q;

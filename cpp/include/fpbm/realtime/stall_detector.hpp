@@ -11,7 +11,7 @@
 
 namespace fpbm {
 
-/// Detects an arm that makes no progress toward its target (docs/realtime.md, Unreachable targets).
+/// Detects an arm that makes no progress toward its target (docs/recovery.md, Unreachable targets).
 ///
 /// Progress is a decrease of the smallest error by more than a step, or a displacement of the target by more than 0.002
 /// (TaskDistance). The arm has stalled if there is no progress for stall_time. The arm continues if its target or a

@@ -59,7 +59,7 @@ struct TrackerOptions {
   Scalar error_bound = Scalar(0.1);
   /// Gain kᵢ of ∫(x ⊖ f(q)) dt, which is added to the acceleration [1/s³] or velocity [1/s²] of the reference. The
   /// integral removes the steady-state error due to a constant bias (PID feedback: Guo et al. 2018). At acceleration
-  /// level, the loop is stable for kᵢ < k₁k₂ (docs/realtime.md, Integral of the error). The integral is constant while
+  /// level, the loop is stable for kᵢ < k₁k₂ (docs/measured.md, Integral of the error). The integral is constant while
   /// the task is slowed or damped, or the error exceeds error_bound. Each task of a stack has an integral.
   /// integral_bound: largest contribution of the integral [characteristic lengths and radians per s², or per s]. The
   /// default of integral_bound is not tuned.

@@ -24,7 +24,7 @@ struct TickReferences {
     return stages[seconds < dt ? (seconds > Number<Scalar>(0) ? 1 : 0) : 2];
   }
 
-  /// Reference of a tick (docs/equations.md, A tick): the reference in the middle. At velocity level, with the mean
+  /// Reference of a tick (docs/tick.md, A tick): the reference in the middle. At velocity level, with the mean
   /// velocity of the tick, (xd₀ + 4xd + xd₁)/6. At acceleration level, with the acceleration
   /// xdd − h²x⁗/24 = xdd − (xdd₀ − 2xdd + xdd₁)/6. With these, positions follow x at the ends of ticks.
   template <Level kLevel>

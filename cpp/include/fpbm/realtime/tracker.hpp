@@ -27,7 +27,7 @@ namespace fpbm {
 /// Moves an arm tick by tick with a scheme, within its joint limits and through singular postures, until the arm is at
 /// rest (docs/realtime.md).
 ///
-/// tick() advances the tracker's own state (docs/equations.md, A tick). The result of tick() is a command for an arm
+/// tick() advances the tracker's own state (docs/tick.md, A tick). The result of tick() is a command for an arm
 /// that accepts positions or velocities and follows them closely. resolve_measured() computes the acceleration for a
 /// measured state, for a torque controller. Never pass a measured state to tick(): the feedback would act twice, and
 /// noise would enter the command.

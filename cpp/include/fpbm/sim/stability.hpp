@@ -62,7 +62,7 @@ template <typename Scalar>
   return is_in_unit_circle(-rk4(Scalar(1), Scalar(0)), -rk4(Scalar(0), Scalar(1)), Scalar(0));
 }
 
-/// Whether a tick damps the errors of a task, with TickFeedback (docs/equations.md, A tick). The integral is a part of
+/// Whether a tick damps the errors of a task, with TickFeedback (docs/tick.md, A tick). The integral is a part of
 /// xdd.
 template <typename Scalar>
 [[nodiscard]] bool is_stable_acceleration_of_levels(Scalar x1, Scalar x2, Scalar x3 = Scalar(0)) noexcept {

@@ -10,7 +10,7 @@
 
 namespace fpbm {
 
-/// Rows of J̇ for ω⊥, the angular velocity perpendicular to an axis a of the frame, for two joints (docs/equations.md,
+/// Rows of J̇ for ω⊥, the angular velocity perpendicular to an axis a of the frame, for two joints (docs/kinematics.md,
 /// Secondary objectives, Axis of a frame):
 ///
 ///   d/dt ω⊥ = (J q̈ + J̇ q̇)⊥ − (aᵀω)(ω × a),   ω = J q̇.

@@ -42,7 +42,7 @@ class RelativeView {
   /// Robot::columns() in the reference frame: J = Rᵀ(J_b − J_a), where J_b is the Jacobian of the point p of the link,
   /// and J_a the Jacobian of the point of the reference link that coincides with p. v = (J_b − J_a) q̇ is the velocity
   /// of p relative to the reference link, w the angular velocity of the reference link, and aᵢ the angular part of
-  /// column i of J_a. Then (docs/equations.md, Time derivative of J, Between two frames)
+  /// column i of J_a. Then (docs/kinematics.md, Time derivative of J, Between two frames)
   ///
   ///   J̇ = Rᵀ(J̇_b − J̇_a − (aᵢ × v; 0)ᵢ − w × (J_b − J_a)).
   template <typename F>

@@ -13,7 +13,7 @@
 namespace fpbm {
 
 /// Joint velocities in the middle of a tick that continues the acceleration of the previous tick, and the accelerations
-/// before this tick (docs/equations.md, A tick).
+/// before this tick (docs/tick.md, A tick).
 template <int N, typename Scalar>
 struct TickBefore {
   Vector<N, Scalar> qd;             ///< q̇ in the middle of the tick [rad/s].
@@ -40,7 +40,7 @@ struct LevelRows {
   [[nodiscard]] Eigen::Index rows() const noexcept { return J.rows(); }
   [[nodiscard]] const Matrix<M, N, Scalar>& matrix() const noexcept { return J; }
 
-  /// Linearises rows first … first + rows − 1 about a tick that continues the previous tick (docs/equations.md, A
+  /// Linearises rows first … first + rows − 1 about a tick that continues the previous tick (docs/tick.md, A
   /// tick): J ← J + h'J̇, drift ← J̇ (qd − h'a' + correction (a' − a'')) − s ẍ', ẍ' = J a' + J̇ qd.
   void continue_tick(const TickFeedback<Scalar>& feedback, int first, Eigen::Index rows,
                      const TickBefore<N, Scalar>& before) noexcept {

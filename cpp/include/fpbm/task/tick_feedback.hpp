@@ -12,7 +12,7 @@ namespace fpbm {
 ///
 /// e is the error x ⊖ f(q) at the start of the tick. e' and ẍ' are the error and the task acceleration in the middle of
 /// a tick that continues the acceleration of the previous tick. The law is the implicit midpoint rule for
-/// ë + k₁'ė + k₂'e = 0 (docs/equations.md, A tick): a tick multiplies an error by
+/// ë + k₁'ė + k₂'e = 0 (docs/tick.md, A tick): a tick multiplies an error by
 /// (2 + λ'h)/(2 − λ'h), where λ'² + k₁'λ' + k₂' = 0. The gains
 ///
 ///   k₁' = k₁ − (k₁² − 3k₂)k₁h²/12,   k₂' = k₂ − (k₁² − 2k₂)k₂h²/12
