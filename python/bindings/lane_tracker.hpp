@@ -30,13 +30,13 @@ class LaneTracker {
   [[nodiscard]] Point tip() const noexcept { return held_->tip(); }
   [[nodiscard]] State<N> state() const noexcept { return held_->state(); }
   [[nodiscard]] Vector<N> acceleration() const noexcept { return held_->acceleration(); }
+  [[nodiscard]] Vector<N> acceleration_change() const noexcept { return held_->acceleration_change(); }
   bool begin(const Vector<Space::kRows>& error, double length) noexcept { return held_->begin(error, length); }
   [[nodiscard]] Reference<Space> corrected(const Reference<Space>& reference) const noexcept {
     return held_->corrected(reference);
   }
-  Status finish(const Reference<Space>& now, const Reference<Space>& middle, const State<N>& next,
-                const Vector<N>& at_start) noexcept {
-    return held_->finish(now, middle, next, at_start);
+  Status finish(const Reference<Space>& now, const TickReferences<Space>& references, const Vector<N>& u) noexcept {
+    return held_->finish(now, references, u);
   }
   Ticked advance(const TickReferences<Space>& references) noexcept { return {held_->advance(references)}; }
 
@@ -49,10 +49,11 @@ class LaneTracker {
     [[nodiscard]] virtual Point tip() const noexcept = 0;
     [[nodiscard]] virtual State<N> state() const noexcept = 0;
     [[nodiscard]] virtual Vector<N> acceleration() const noexcept = 0;
+    [[nodiscard]] virtual Vector<N> acceleration_change() const noexcept = 0;
     virtual bool begin(const Vector<Space::kRows>& error, double length) noexcept = 0;
     [[nodiscard]] virtual Reference<Space> corrected(const Reference<Space>& reference) const noexcept = 0;
-    virtual Status finish(const Reference<Space>& now, const Reference<Space>& middle, const State<N>& next,
-                          const Vector<N>& at_start) noexcept = 0;
+    virtual Status finish(const Reference<Space>& now, const TickReferences<Space>& references,
+                          const Vector<N>& u) noexcept = 0;
     virtual Status advance(const TickReferences<Space>& references) noexcept = 0;
   };
 
@@ -63,15 +64,16 @@ class LaneTracker {
     [[nodiscard]] Point tip() const noexcept override { return tracker_->tip(); }
     [[nodiscard]] State<N> state() const noexcept override { return {tracker_->state().q, tracker_->state().qd}; }
     [[nodiscard]] Vector<N> acceleration() const noexcept override { return tracker_->acceleration(); }
+    [[nodiscard]] Vector<N> acceleration_change() const noexcept override { return tracker_->acceleration_change(); }
     bool begin(const Vector<Space::kRows>& error, double length) noexcept override {
       return tracker_->begin(error, length);
     }
     [[nodiscard]] Reference<Space> corrected(const Reference<Space>& reference) const noexcept override {
       return tracker_->corrected(reference);
     }
-    Status finish(const Reference<Space>& now, const Reference<Space>& middle, const State<N>& next,
-                  const Vector<N>& at_start) noexcept override {
-      return tracker_->finish(now, middle, {next.q, next.qd}, at_start);
+    Status finish(const Reference<Space>& now, const TickReferences<Space>& references,
+                  const Vector<N>& u) noexcept override {
+      return tracker_->finish(now, references, u);
     }
     Status advance(const TickReferences<Space>& references) noexcept override { return tracker_->advance(references); }
 

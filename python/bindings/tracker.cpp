@@ -37,6 +37,9 @@ class TrackerAt final : public AnyTracker<Space> {
   [[nodiscard]] const AnyArmFor<Space>& arm() const noexcept override { return tracker_.arm(); }
   [[nodiscard]] const State<kDynamic>& state() const noexcept override { return tracker_.state(); }
   [[nodiscard]] const JointVector& acceleration() const noexcept override { return tracker_.acceleration(); }
+  [[nodiscard]] const JointVector& acceleration_change() const noexcept override {
+    return tracker_.acceleration_change();
+  }
   [[nodiscard]] Point tip() const noexcept override { return tracker_.tip(); }
   [[nodiscard]] Clearance<kDynamic>& clearance() noexcept override { return tracker_.guard().clearance(); }
 
@@ -46,9 +49,9 @@ class TrackerAt final : public AnyTracker<Space> {
   [[nodiscard]] Reference<Space> corrected(const Reference<Space>& reference) const noexcept override {
     return tracker_.corrected(reference);
   }
-  Status finish(const Reference<Space>& now, const Reference<Space>& middle, const State<kDynamic>& next,
-                const JointVector& at_start) noexcept override {
-    return tracker_.finish(now, middle, next, at_start);
+  Status finish(const Reference<Space>& now, const TickReferences<Space>& references,
+                const JointVector& u) noexcept override {
+    return tracker_.finish(now, references, u);
   }
   Status advance(const TickReferences<Space>& references) noexcept override {
     return tracker_.advance(references).status;

@@ -40,14 +40,15 @@ class AnyTracker {
   [[nodiscard]] virtual const AnyArmFor<Space>& arm() const noexcept = 0;
   [[nodiscard]] virtual const State<kDynamic>& state() const noexcept = 0;
   [[nodiscard]] virtual const JointVector& acceleration() const noexcept = 0;
+  [[nodiscard]] virtual const JointVector& acceleration_change() const noexcept = 0;
   [[nodiscard]] virtual Point tip() const noexcept = 0;
   [[nodiscard]] virtual Clearance<kDynamic>& clearance() noexcept = 0;
 
   // A tick whose step is made in lanes (LaneTracker).
   virtual bool begin(const Vector<Space::kRows>& error, double length) noexcept = 0;
   [[nodiscard]] virtual Reference<Space> corrected(const Reference<Space>& reference) const noexcept = 0;
-  virtual Status finish(const Reference<Space>& now, const Reference<Space>& middle, const State<kDynamic>& next,
-                        const JointVector& at_start) noexcept = 0;
+  virtual Status finish(const Reference<Space>& now, const TickReferences<Space>& references,
+                        const JointVector& u) noexcept = 0;
   virtual Status advance(const TickReferences<Space>& references) noexcept = 0;
 };
 

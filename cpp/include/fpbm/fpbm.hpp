@@ -137,6 +137,7 @@
 #include "fpbm/objective/manipulability_ascent.hpp"
 #include "fpbm/objective/null_space.hpp"
 #include "fpbm/realtime/account.hpp"
+#include "fpbm/realtime/continue_tick.hpp"
 #include "fpbm/realtime/correction.hpp"
 #include "fpbm/realtime/desire.hpp"
 #include "fpbm/realtime/followable_fraction.hpp"

@@ -142,9 +142,6 @@ class Tracker {
     return result.status;
   }
 
-  /// Acceleration of the last tick and its change from the tick before (TickState).
-  [[nodiscard]] const TickState<kLevel, Space, N, Scalar>& tick_state() const noexcept { return state_.tick; }
-
   /// Acceleration within the limits for a measured state that is at most options.measured_delay ticks old. The
   /// tracker's own state does not change. Never stalls: without feedback of the tip, a measured arm would sag.
   [[nodiscard]] Result resolve_measured(const JointVector& q, const JointVector& qd, const Target& reference) noexcept {
@@ -170,8 +167,9 @@ class Tracker {
   void resume() noexcept { state_.resume(); }
 
   [[nodiscard]] const JointState& state() const noexcept { return state_.tick.joints; }
-  /// Acceleration of the last tick.
+  /// Acceleration of the last tick, and its change from the tick before.
   [[nodiscard]] const JointVector& acceleration() const noexcept { return state_.tick.last; }
+  [[nodiscard]] const JointVector& acceleration_change() const noexcept { return state_.tick.change; }
   [[nodiscard]] const Arm& arm() const noexcept { return arm_; }
   /// Bits of the continuous joints.
   [[nodiscard]] JointBits continuous() const noexcept { return state_.continuous; }

@@ -97,8 +97,8 @@ class TrackerBatch {
                                         Vector<N, In>& u) noexcept {
     TickState<Scheme::kLevel, Space, N, In> state{{In(references.dt)}, loop.state, loop.state.qd, loop.state.qd};
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      set_lane(state.last, lane, Vector<N, Scalar>(trackers_[lane].tick_state().last));
-      set_lane(state.change, lane, Vector<N, Scalar>(trackers_[lane].tick_state().change));
+      set_lane(state.last, lane, Vector<N, Scalar>(trackers_[lane].acceleration()));
+      set_lane(state.change, lane, Vector<N, Scalar>(trackers_[lane].acceleration_change()));
     }
     X dx = Loop::packed(loop.state);
     const auto middle = state.update_middle(loop, references, gains_of<In>(scheme_));
