@@ -74,12 +74,15 @@ template <int N>
          round_off;
 }
 
-/// σ of a tick equals the bound from JJᵀ, for every factorisation that reports σ. The round-off error of JJᵀ limits the
-/// agreement.
-template <typename Space, typename Arm>
-void expect_sigma(const Arm& arm, const Vector<Arm::kDof>& q, double sigma) {
+/// σ of a tick equals the bound from JJᵀ with the rows of the tick, for every factorisation that reports σ. The
+/// round-off error of JJᵀ limits the agreement. middle: state in the middle of the tick.
+template <typename Space, typename Arm, typename Scheme>
+void expect_sigma(const Arm& arm, const Scheme& scheme, const State<Arm::kDof>& middle, double sigma) {
   Kinematics<Space, Arm::kDof> kinematics;
-  arm.kinematics(q, kinematics);
+  arm.kinematics(middle.q, middle.qd, kinematics);
+  const TaskGains<> gains = gains_of<double>(scheme);
+  const double lead = Scheme::kLevel == Level::kVelocity ? kTick / 2.0 : TickFeedback<>(gains.k1, gains.k2, kTick).lead;
+  kinematics.J += lead * kinematics.Jd;
   const double bound = least_singular_value_bound(kinematics.J);
   const double condition = kinematics.J.norm() / bound;
   EXPECT_NEAR(sigma, bound,
@@ -102,15 +105,19 @@ void roll(const Arm& arm, const JointLimits<Arm::kDof>& bounds, MakeScheme&& mak
   for (int seed = 0; seed < rollouts; ++seed) {
     Random random(static_cast<std::uint32_t>(seed));
     const auto scheme = make_scheme(random, arm.dof());
-    const Limits<std::decay_t<decltype(scheme)>::kLevel, N> limits(bounds, kTick);
+    constexpr Level kLevel = std::decay_t<decltype(scheme)>::kLevel;
+    const Limits<kLevel, N> limits(bounds, kTick);
+    const TickMotion<kLevel, N> motion{kTick};
     CompiledTracker tracker(arm, Space{}, scheme, viable_state(limits, random), {}, limits);
     auto reference = Reference<Space>::hold(tracker.tip());
     Vector<N> previous = tracker.state().q;
+    State<N> middle = tracker.state();
     double sigma = 0.0;
     for (int i = 0; i < 200; ++i) {
-      if (i % 20 == 1) expect_sigma<Space>(arm, previous, sigma);
+      if (i % 20 == 1) expect_sigma<Space>(arm, scheme, middle, sigma);
       if (i % 20 == 0) reference = wild_reference<Space>(random, tracker.tip());
       const State<N> before = tracker.state();
+      middle = kLevel == Level::kVelocity ? motion.middle(before) : motion.middle(before, tracker.acceleration());
       const auto tick = tracker.tick(reference);
       ASSERT_TRUE(tick.q.allFinite() && tick.qd.allFinite() && tick.qdd.allFinite()) << "seed " << seed;
       const double broken = violation(bounds, before, tick);
