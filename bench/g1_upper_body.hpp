@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fpbm/core/rotation.hpp"
+#include "fpbm/geometry/rotation.hpp"
 #include "fpbm/model/tree.hpp"
 
 namespace bench {

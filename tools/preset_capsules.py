@@ -24,7 +24,7 @@ from fpbm_cpp.capsule import Capsule
 from fpbm_cpp.urdf.capsules import capsules_of
 from fpbm_cpp.urdf.mesh_file import find_mesh
 
-HEADER = Path(__file__).parent.parent / "cpp/include/fpbm/clearance/preset_capsules.hpp"
+HEADER = Path(__file__).parent.parent / "cpp/include/fpbm/bound/preset_capsules.hpp"
 GRID = 1e-4  # [m]
 POSTURES = 1000
 MOST_OFF = 1e-3  # [m] or [rad]
@@ -234,7 +234,7 @@ def main() -> None:
 #include <utility>
 #include <vector>
 
-#include "fpbm/clearance/clearance.hpp"
+#include "fpbm/bound/clearance.hpp"
 
 /// Capsules on the links of the presets [m]. The capsules contain the collision meshes of the manufacturers in every
 /// posture, but no cables, tools or other mounted parts. Written by tools/preset_capsules.py.

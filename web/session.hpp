@@ -1,13 +1,13 @@
 #pragma once
 
 #include <algorithm>
-#include <fpbm/clearance/link_capsule.hpp>
+#include <fpbm/bound/detail/link_capsule.hpp>
 #include <fpbm/model/robot.hpp>
 #include <fpbm/objective/null_space.hpp>
-#include <fpbm/realtime/path_follower.hpp>
+#include <fpbm/path/path_follower.hpp>
 #include <fpbm/realtime/tracker.hpp>
 #include <fpbm/scheme/schemes.hpp>
-#include <fpbm/task/target_filter.hpp>
+#include <fpbm/target/target_filter.hpp>
 #include <utility>
 #include <variant>
 #include <vector>

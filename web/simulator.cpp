@@ -2,12 +2,12 @@
 // and reads. web/simulator.js has the same order.
 
 #include <cmath>
-#include <fpbm/clearance/preset_capsules.hpp>
+#include <fpbm/bound/preset_capsules.hpp>
 #include <fpbm/model/planar_arm.hpp>
 #include <fpbm/model/presets.hpp>
 #include <fpbm/model/serial_arm.hpp>
-#include <fpbm/task/in_plane.hpp>
-#include <fpbm/task/with_rotation.hpp>
+#include <fpbm/path/in_plane.hpp>
+#include <fpbm/path/with_rotation.hpp>
 #include <memory>
 #include <vector>
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "fpbm/any/any_arm.hpp"
-#include "fpbm/core/validation.hpp"
+#include "fpbm/core/detail/validation.hpp"
 #include "fpbm/model/chain.hpp"
 #include "model.hpp"
 

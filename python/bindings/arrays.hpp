@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "bindings.hpp"
-#include "fpbm/core/space.hpp"
-#include "fpbm/core/validation.hpp"
+#include "fpbm/core/detail/validation.hpp"
+#include "fpbm/geometry/space.hpp"
 #include "fpbm/model/chain.hpp"
 
 namespace fpbm::bindings {

@@ -7,8 +7,8 @@
 
 #include "arrays.hpp"
 #include "clearance.hpp"
-#include "fpbm/clearance/robot_capsules.hpp"
-#include "fpbm/clearance/task_bounds.hpp"
+#include "fpbm/bound/robot_capsules.hpp"
+#include "fpbm/bound/task_bounds.hpp"
 #include "read_stack.hpp"
 
 namespace fpbm::bindings {

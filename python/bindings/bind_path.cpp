@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "arrays.hpp"
-#include "fpbm/any/any_time_law.hpp"
-#include "fpbm/any/convert_path.hpp"
-#include "fpbm/task/in_plane.hpp"
-#include "fpbm/task/path.hpp"
-#include "fpbm/task/sequence.hpp"
-#include "fpbm/task/waypoints.hpp"
-#include "fpbm/task/with_rotation.hpp"
+#include "fpbm/any/detail/any_time_law.hpp"
+#include "fpbm/any/detail/convert_path.hpp"
+#include "fpbm/path/in_plane.hpp"
+#include "fpbm/path/path.hpp"
+#include "fpbm/path/sequence.hpp"
+#include "fpbm/path/waypoints.hpp"
+#include "fpbm/path/with_rotation.hpp"
 #include "path.hpp"
 
 namespace fpbm::bindings {

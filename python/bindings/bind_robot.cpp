@@ -7,8 +7,8 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "fpbm/model/center_of_mass.hpp"
-#include "fpbm/model/robot_presets.hpp"
+#include "fpbm/model/detail/center_of_mass.hpp"
+#include "fpbm/model/detail/robot_presets.hpp"
 #include "joints.hpp"
 #include "model.hpp"
 

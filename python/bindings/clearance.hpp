@@ -6,7 +6,7 @@
 #include <string>
 
 #include "arm.hpp"
-#include "fpbm/clearance/clearance.hpp"
+#include "fpbm/bound/clearance.hpp"
 
 namespace fpbm::bindings {
 

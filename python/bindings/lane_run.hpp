@@ -5,7 +5,7 @@
 
 #include "fpbm/core/lanes.hpp"
 #include "fpbm/realtime/tracker_batch.hpp"
-#include "fpbm/sim/rollout.hpp"
+#include "fpbm/simulate/rollout.hpp"
 #include "lanes.hpp"
 
 namespace fpbm::bindings {

@@ -5,7 +5,7 @@
 
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/types.hpp"
-#include "fpbm/realtime/tick_references.hpp"
+#include "fpbm/realtime/detail/tick_references.hpp"
 
 namespace fpbm::bindings {
 

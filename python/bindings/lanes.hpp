@@ -6,13 +6,13 @@
 #include <type_traits>
 #include <vector>
 
-#include "fpbm/any/any_path.hpp"
+#include "fpbm/any/detail/any_path.hpp"
 #include "fpbm/model/planar_arm.hpp"
 #include "fpbm/model/serial_arm.hpp"
 #include "fpbm/scheme/acceleration_scheme.hpp"
 #include "fpbm/scheme/velocity_scheme.hpp"
-#include "fpbm/sim/summary.hpp"
-#include "fpbm/sim/time_grid.hpp"
+#include "fpbm/simulate/summary.hpp"
+#include "fpbm/simulate/time_grid.hpp"
 #include "lane_tracker.hpp"
 
 namespace fpbm::bindings {

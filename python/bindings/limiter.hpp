@@ -3,9 +3,9 @@
 #include <variant>
 
 #include "arm.hpp"
-#include "fpbm/clearance/guard.hpp"
+#include "fpbm/bound/guard.hpp"
+#include "fpbm/limits/detail/rows.hpp"
 #include "fpbm/limits/limiter.hpp"
-#include "fpbm/limits/rows.hpp"
 
 namespace fpbm::bindings {
 

@@ -2,8 +2,8 @@
 #include <string>
 
 #include "bindings.hpp"
-#include "fpbm/clearance/too_close.hpp"
-#include "fpbm/core/validation.hpp"
+#include "fpbm/bound/detail/too_close.hpp"
+#include "fpbm/core/detail/validation.hpp"
 
 namespace {
 

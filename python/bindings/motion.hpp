@@ -1,9 +1,9 @@
 #pragma once
 
-#include "fpbm/any/any_path.hpp"
-#include "fpbm/clearance/clearance.hpp"
+#include "fpbm/any/detail/any_path.hpp"
+#include "fpbm/bound/clearance.hpp"
 #include "fpbm/realtime/tick.hpp"
-#include "fpbm/sim/rollout.hpp"
+#include "fpbm/simulate/rollout.hpp"
 #include "lane_tracker.hpp"
 #include "recorder.hpp"
 #include "scheme.hpp"

@@ -2,8 +2,8 @@
 
 #include <variant>
 
-#include "fpbm/any/any_path.hpp"
-#include "fpbm/core/space.hpp"
+#include "fpbm/any/detail/any_path.hpp"
+#include "fpbm/geometry/space.hpp"
 
 namespace fpbm::bindings {
 

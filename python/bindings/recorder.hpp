@@ -3,8 +3,8 @@
 #include <atomic>
 
 #include "arm.hpp"
-#include "fpbm/sim/motion.hpp"
-#include "fpbm/sim/summary.hpp"
+#include "fpbm/simulate/detail/motion.hpp"
+#include "fpbm/simulate/summary.hpp"
 
 namespace fpbm::bindings {
 

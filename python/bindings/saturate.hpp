@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "arm.hpp"
-#include "fpbm/limits/box.hpp"
+#include "fpbm/limits/detail/box.hpp"
 
 namespace fpbm::bindings {
 

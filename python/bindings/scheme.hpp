@@ -8,7 +8,7 @@
 
 #include "arm.hpp"
 #include "fpbm/any/any_scheme.hpp"
-#include "fpbm/any/any_weights.hpp"
+#include "fpbm/any/detail/any_weights.hpp"
 #include "fpbm/scheme/acceleration_scheme.hpp"
 #include "fpbm/scheme/velocity_scheme.hpp"
 

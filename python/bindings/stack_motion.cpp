@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <type_traits>
 
-#include "fpbm/realtime/reference_sources.hpp"
+#include "fpbm/realtime/detail/reference_sources.hpp"
 
 namespace fpbm::bindings {
 

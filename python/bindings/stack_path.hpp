@@ -5,8 +5,8 @@
 #include <variant>
 #include <vector>
 
-#include "fpbm/any/any_path.hpp"
-#include "fpbm/sim/anchored_path.hpp"
+#include "fpbm/any/detail/any_path.hpp"
+#include "fpbm/simulate/detail/anchored_path.hpp"
 #include "stack_tasks.hpp"
 
 namespace fpbm::bindings {

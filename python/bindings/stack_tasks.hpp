@@ -6,7 +6,7 @@
 
 #include "fpbm/any/any_stack.hpp"
 #include "fpbm/core/level.hpp"
-#include "fpbm/task/reference.hpp"
+#include "fpbm/path/reference.hpp"
 #include "model.hpp"
 
 namespace fpbm::bindings {

@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <type_traits>
 
-#include "fpbm/clearance/guard.hpp"
+#include "fpbm/bound/guard.hpp"
 #include "fpbm/realtime/stack_tracker.hpp"
 
 namespace fpbm::bindings {

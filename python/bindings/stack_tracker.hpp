@@ -5,10 +5,10 @@
 #include <memory>
 
 #include "fpbm/any/any_stack.hpp"
-#include "fpbm/clearance/clearance.hpp"
-#include "fpbm/realtime/stack_tick.hpp"
-#include "fpbm/realtime/tick_references.hpp"
-#include "fpbm/sim/rollout.hpp"
+#include "fpbm/bound/clearance.hpp"
+#include "fpbm/realtime/detail/stack_tick.hpp"
+#include "fpbm/realtime/detail/tick_references.hpp"
+#include "fpbm/simulate/rollout.hpp"
 #include "scheme.hpp"
 #include "stack_path.hpp"
 

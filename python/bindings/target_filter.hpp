@@ -2,7 +2,7 @@
 
 #include <variant>
 
-#include "fpbm/task/target_filter.hpp"
+#include "fpbm/target/target_filter.hpp"
 
 namespace fpbm::bindings {
 

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "fpbm/clearance/guard.hpp"
+#include "fpbm/bound/guard.hpp"
 #include "fpbm/realtime/tracker.hpp"
 
 namespace fpbm::bindings {

@@ -2,12 +2,12 @@
 
 #include <memory>
 
-#include "fpbm/any/any_path.hpp"
-#include "fpbm/clearance/clearance.hpp"
-#include "fpbm/realtime/path_follower.hpp"
+#include "fpbm/any/detail/any_path.hpp"
+#include "fpbm/bound/clearance.hpp"
+#include "fpbm/path/path_follower.hpp"
+#include "fpbm/realtime/detail/tick_references.hpp"
 #include "fpbm/realtime/tick.hpp"
-#include "fpbm/realtime/tick_references.hpp"
-#include "fpbm/task/target_filter.hpp"
+#include "fpbm/target/target_filter.hpp"
 #include "scheme.hpp"
 
 namespace fpbm::bindings {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <urdf/model.h>
-#include <fpbm/core/rotation.hpp>
+#include <fpbm/geometry/rotation.hpp>
 #include <fpbm/model/chain.hpp>
 #include <memory>
 #include <string>

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "fpbm/any/any_weights.hpp"
+#include "fpbm/any/detail/any_weights.hpp"
 #include "fpbm/realtime/stack_tracker.hpp"
 #include "fpbm/task/axis_task.hpp"
 #include "fpbm/task/center_of_mass_task.hpp"

@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "fpbm/any/any_arm.hpp"
-#include "fpbm/any/any_path.hpp"
 #include "fpbm/any/any_scheme.hpp"
-#include "fpbm/any/any_time_law.hpp"
-#include "fpbm/any/any_weights.hpp"
-#include "fpbm/any/convert_path.hpp"
+#include "fpbm/any/detail/any_path.hpp"
+#include "fpbm/any/detail/any_time_law.hpp"
+#include "fpbm/any/detail/any_weights.hpp"
+#include "fpbm/any/detail/convert_path.hpp"
 #include "support/arms.hpp"
 #include "support/compiled_tracker.hpp"
 #include "support/paper.hpp"

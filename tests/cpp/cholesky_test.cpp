@@ -1,4 +1,4 @@
-#include "fpbm/linalg/cholesky.hpp"
+#include "fpbm/linalg/detail/cholesky.hpp"
 
 #include <gtest/gtest.h>
 

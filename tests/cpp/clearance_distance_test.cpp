@@ -1,4 +1,4 @@
-#include "fpbm/clearance/distance.hpp"
+#include "fpbm/bound/detail/distance.hpp"
 
 #include <gtest/gtest.h>
 

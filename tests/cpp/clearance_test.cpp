@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "fpbm/clearance/advancement.hpp"
+#include "fpbm/bound/detail/advancement.hpp"
 #include "support/arms.hpp"
 #include "support/bodies.hpp"
 

@@ -1,4 +1,4 @@
-#include "fpbm/sim/closed_loop.hpp"
+#include "fpbm/simulate/detail/closed_loop.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "fpbm/singular/damped_level.hpp"
+#include "fpbm/singular/detail/damped_level.hpp"
 
 #include <gtest/gtest.h>
 

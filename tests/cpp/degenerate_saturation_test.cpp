@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "fpbm/limits/saturation.hpp"
-#include "fpbm/linalg/level_space.hpp"
+#include "fpbm/limits/detail/saturation.hpp"
+#include "fpbm/linalg/detail/level_space.hpp"
 #include "support/linear_program.hpp"
 #include "support/random.hpp"
 

@@ -1,4 +1,4 @@
-#include "fpbm/linalg/eigenpairs_below.hpp"
+#include "fpbm/linalg/detail/eigenpairs_below.hpp"
 
 #include <gtest/gtest.h>
 

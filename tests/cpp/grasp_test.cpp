@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "fpbm/model/detail/robot_presets.hpp"
 #include "fpbm/model/presets.hpp"
-#include "fpbm/model/robot_presets.hpp"
 #include "fpbm/realtime/stack_tracker.hpp"
 #include "fpbm/scheme/schemes.hpp"
 #include "fpbm/task/pose_task.hpp"

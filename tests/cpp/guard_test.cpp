@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "fpbm/clearance/guard.hpp"
-#include "fpbm/clearance/preset_capsules.hpp"
-#include "fpbm/clearance/task_bounds.hpp"
+#include "fpbm/bound/guard.hpp"
+#include "fpbm/bound/preset_capsules.hpp"
+#include "fpbm/bound/task_bounds.hpp"
 #include "fpbm/model/robot.hpp"
 #include "fpbm/realtime/stack_tracker.hpp"
 #include "fpbm/realtime/tracker.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "fpbm/linalg/pair.hpp"
+#include "fpbm/linalg/detail/pair.hpp"
 #include "fpbm/model/planar_arm.hpp"
 #include "support/random.hpp"
 #include "support/textbook.hpp"

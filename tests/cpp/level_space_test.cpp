@@ -1,4 +1,4 @@
-#include "fpbm/linalg/level_space.hpp"
+#include "fpbm/linalg/detail/level_space.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 #include <type_traits>
 
 #include "fpbm/scheme/schemes.hpp"
-#include "fpbm/sim/anchored_path.hpp"
-#include "fpbm/sim/closed_loop.hpp"
+#include "fpbm/simulate/detail/anchored_path.hpp"
+#include "fpbm/simulate/detail/closed_loop.hpp"
 #include "fpbm/singular/damping.hpp"
 #include "support/paper.hpp"
 

@@ -1,4 +1,4 @@
-#include "fpbm/realtime/lower_levels.hpp"
+#include "fpbm/realtime/detail/lower_levels.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "fpbm/any/any_stack.hpp"
+#include "fpbm/model/detail/robot_presets.hpp"
 #include "fpbm/model/presets.hpp"
-#include "fpbm/model/robot_presets.hpp"
 #include "fpbm/realtime/stack_tracker.hpp"
 #include "fpbm/scheme/schemes.hpp"
 #include "support/random.hpp"

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "fpbm/realtime/measured_limiter.hpp"
+#include "fpbm/realtime/detail/measured_limiter.hpp"
 #include "support/random.hpp"
 
 /// Limits of one joint whose state is measured with a delay.

@@ -1,4 +1,4 @@
-#include "fpbm/linalg/null_basis.hpp"
+#include "fpbm/linalg/detail/null_basis.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "fpbm/realtime/path_follower.hpp"
+#include "fpbm/path/path_follower.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "fpbm/task/path.hpp"
+#include "fpbm/path/path.hpp"
 #include "support/random.hpp"
 
 /// The clock of a path follower follows the path time, for all sequences of pauses and resumes.

@@ -1,4 +1,4 @@
-#include "fpbm/task/path.hpp"
+#include "fpbm/path/path.hpp"
 
 #include <gtest/gtest.h>
 

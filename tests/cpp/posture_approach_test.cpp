@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "fpbm/any/any_stack.hpp"
+#include "fpbm/model/detail/robot_presets.hpp"
 #include "fpbm/model/presets.hpp"
-#include "fpbm/model/robot_presets.hpp"
 #include "fpbm/realtime/stack_tracker.hpp"
 #include "fpbm/scheme/schemes.hpp"
 #include "fpbm/task/pose_task.hpp"

@@ -1,4 +1,4 @@
-#include "fpbm/clearance/preset_capsules.hpp"
+#include "fpbm/bound/preset_capsules.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <tuple>
 #include <vector>
 
-#include "fpbm/clearance/robot_capsules.hpp"
+#include "fpbm/bound/robot_capsules.hpp"
+#include "fpbm/model/detail/robot_presets.hpp"
 #include "fpbm/model/presets.hpp"
-#include "fpbm/model/robot_presets.hpp"
 
 /// Capsules of the arms of presets.hpp: on every link, apart in the home postures, and not too large.
 /// tests/python/test_preset_capsules.py checks that they contain the links.

@@ -1,4 +1,4 @@
-#include "fpbm/core/quickest_stop.hpp"
+#include "fpbm/core/detail/quickest_stop.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "fpbm/sim/rk4.hpp"
+#include "fpbm/simulate/detail/rk4.hpp"
 
 #include <gtest/gtest.h>
 

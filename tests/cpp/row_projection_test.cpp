@@ -3,9 +3,9 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "fpbm/limits/detail/row_projection.hpp"
+#include "fpbm/limits/detail/smallest_task_change.hpp"
 #include "fpbm/limits/limiter.hpp"
-#include "fpbm/limits/row_projection.hpp"
-#include "fpbm/limits/smallest_task_change.hpp"
 #include "support/random.hpp"
 
 /// The motion that satisfies the rows and changes a task least.

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "fpbm/core/space.hpp"
+#include "fpbm/geometry/space.hpp"
 #include "fpbm/scheme/schemes.hpp"
 #include "support/random.hpp"
 

@@ -1,4 +1,4 @@
-#include "fpbm/limits/saturation.hpp"
+#include "fpbm/limits/detail/saturation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "fpbm/singular/scaled_level.hpp"
+#include "fpbm/singular/detail/scaled_level.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "fpbm/linalg/self_motion.hpp"
+#include "fpbm/linalg/detail/self_motion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cstring>
 #include <limits>
 
-#include "fpbm/linalg/row_factor.hpp"
+#include "fpbm/linalg/detail/row_factor.hpp"
 #include "support/make_subjects.hpp"
 
 /// Factorisations of J without JJᵀ, by its one self-motion and by its rows, compared with pseudoinverses in extended

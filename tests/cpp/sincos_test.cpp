@@ -1,4 +1,4 @@
-#include "fpbm/core/sincos.hpp"
+#include "fpbm/geometry/detail/sincos.hpp"
 
 #include <gtest/gtest.h>
 

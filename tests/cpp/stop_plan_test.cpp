@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fpbm/limits/stop_plan.hpp"
+#include "fpbm/limits/detail/stop_plan.hpp"
 #include "support/arms.hpp"
 
 /// Stopping trajectories that are known to their end.

@@ -1,4 +1,4 @@
-#include "fpbm/sim/summary.hpp"
+#include "fpbm/simulate/summary.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "fpbm/task/target_filter.hpp"
+#include "fpbm/target/target_filter.hpp"
 
 #include <gtest/gtest.h>
 

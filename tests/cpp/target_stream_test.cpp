@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "fpbm/task/target_filter.hpp"
+#include "fpbm/target/target_filter.hpp"
 #include "support/random.hpp"
 
 /// Streams of targets from real senders: clocks that drift, jump and restart, and rounded orientations.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fpbm/task/target_filter.hpp"
+#include "fpbm/target/target_filter.hpp"
 #include "support/random.hpp"
 
 /// Time in which a TargetFilter changes the orientation, compared with the largest angle alone.

@@ -1,11 +1,11 @@
-#include "fpbm/clearance/task_bounds.hpp"
+#include "fpbm/bound/task_bounds.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 
-#include "fpbm/clearance/guard.hpp"
+#include "fpbm/bound/guard.hpp"
 #include "fpbm/realtime/tracker.hpp"
 #include "support/arms.hpp"
 #include "support/wild_reference.hpp"

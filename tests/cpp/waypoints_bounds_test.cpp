@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "fpbm/task/waypoints.hpp"
+#include "fpbm/path/waypoints.hpp"
 #include "support/random.hpp"
 
 /// Waypoints::within: no bound is exceeded between samples, and the path is as fast as documented.

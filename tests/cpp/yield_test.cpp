@@ -1,4 +1,4 @@
-#include "fpbm/limits/least_squares_blend.hpp"
+#include "fpbm/limits/detail/least_squares_blend.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <cstdio>
-#include <fpbm/core/sincos.hpp>
-#include <fpbm/linalg/sums.hpp>
+#include <fpbm/geometry/detail/sincos.hpp>
+#include <fpbm/linalg/detail/sums.hpp>
 #include <limits>
 
 /// Succeeds if sine and cosine are right, alone and in a vector, and non-finite numbers are detected.

@@ -32,7 +32,7 @@ Exact = NDArray[np.longdouble]
 
 PROGRAM = """
 #include <cstdio>
-#include "fpbm/clearance/distance.hpp"
+#include "fpbm/bound/detail/distance.hpp"
 
 using fpbm::Vector;
 

@@ -329,7 +329,7 @@ def test_capsules_are_written_if_they_are_given() -> None:
     assert "LinkCapsule" not in without
     assert "clearance" not in without
     for text in (none, one):
-        assert "#include <fpbm/clearance/clearance.hpp>\n" in text
+        assert "#include <fpbm/bound/clearance.hpp>\n" in text
         assert "inline std::vector<fpbm::LinkCapsule<double>> capsules() {\n" in text
     assert '      {1, {{0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, 0.5}, "link"},\n' in one
 

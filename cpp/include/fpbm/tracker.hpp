@@ -5,9 +5,9 @@
 
 #include "fpbm/model/presets.hpp"
 #include "fpbm/model/serial_arm.hpp"
+#include "fpbm/path/in_plane.hpp"
+#include "fpbm/path/path.hpp"
+#include "fpbm/path/shapes.hpp"
+#include "fpbm/path/with_rotation.hpp"
 #include "fpbm/realtime/tracker.hpp"
 #include "fpbm/scheme/schemes.hpp"
-#include "fpbm/task/in_plane.hpp"
-#include "fpbm/task/path.hpp"
-#include "fpbm/task/shapes.hpp"
-#include "fpbm/task/with_rotation.hpp"

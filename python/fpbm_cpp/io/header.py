@@ -53,7 +53,7 @@ def export_header(
     arm = f"fpbm::{kind}<kDof, {scalar}>"
     includes = ["array", f"fpbm/model/{'serial_arm' if kind == 'SerialArm' else 'coupled_arm'}.hpp"]
     if capsules is not None:
-        includes += ["fpbm/clearance/clearance.hpp", "vector"]
+        includes += ["fpbm/bound/clearance.hpp", "vector"]
     return f"""\
 {_begin(joints, name, source, includes)}
 /// The joints from base to tip, each placed in the frame of the previous joint [m].

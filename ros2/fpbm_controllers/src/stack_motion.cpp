@@ -6,7 +6,7 @@
 #include <fpbm/model/robot.hpp>
 #include <fpbm/realtime/stack_tracker.hpp>
 #include <fpbm/scheme/schemes.hpp>
-#include <fpbm/task/target_filter.hpp>
+#include <fpbm/target/target_filter.hpp>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>

@@ -1,7 +1,7 @@
 #include <fpbm/model/coupled_arm.hpp>
 #include <fpbm/realtime/tracker.hpp>
 #include <fpbm/scheme/schemes.hpp>
-#include <fpbm/task/target_filter.hpp>
+#include <fpbm/target/target_filter.hpp>
 #include <stdexcept>
 
 #include "fpbm_controllers/description.hpp"

@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "fpbm/any/any_arm.hpp"
-#include "fpbm/any/any_path.hpp"
-#include "fpbm/clearance/guard.hpp"
+#include "fpbm/any/detail/any_path.hpp"
+#include "fpbm/bound/guard.hpp"
 #include "fpbm/realtime/tracker.hpp"
 #include "fpbm/scheme/schemes.hpp"
 

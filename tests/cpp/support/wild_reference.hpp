@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "fpbm/task/reference.hpp"
+#include "fpbm/path/reference.hpp"
 #include "support/random.hpp"
 
 namespace fpbm::test {

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <memory>
 
-#include "fpbm/core/space.hpp"
 #include "fpbm/core/types.hpp"
+#include "fpbm/geometry/space.hpp"
 #include "fpbm/model/joint.hpp"
 #include "fpbm/model/kinematics.hpp"
 

@@ -7,9 +7,9 @@
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/model/kinematics.hpp"
-#include "fpbm/realtime/require_stable.hpp"
-#include "fpbm/scheme/set_damping.hpp"
-#include "fpbm/task/reference.hpp"
+#include "fpbm/path/reference.hpp"
+#include "fpbm/realtime/detail/require_stable.hpp"
+#include "fpbm/scheme/detail/set_damping.hpp"
 
 namespace fpbm {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "fpbm/any/any_frame_task.hpp"
-#include "fpbm/any/any_posture_task.hpp"
+#include "fpbm/any/detail/any_frame_task.hpp"
+#include "fpbm/any/detail/any_posture_task.hpp"
 #include "fpbm/task/stack.hpp"
 
 namespace fpbm {

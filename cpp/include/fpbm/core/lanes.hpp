@@ -4,7 +4,7 @@
 #include <experimental/simd>
 
 /// K numbers in the lanes of SIMD registers. With Scalar = Lanes<K>, the same code computes K arms, or K motions of an
-/// arm, in parallel. core/mask.hpp describes the replacement for branches.
+/// arm, in parallel. core/detail/mask.hpp describes the replacement for branches.
 namespace fpbm {
 
 template <int K, typename T = double>

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-#include "fpbm/core/float_model.hpp"
+#include "fpbm/core/detail/float_model.hpp"
 
 namespace fpbm {
 

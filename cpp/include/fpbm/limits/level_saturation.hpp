@@ -1,11 +1,11 @@
 #pragma once
 
-#include "fpbm/limits/box.hpp"
-#include "fpbm/limits/rows.hpp"
-#include "fpbm/limits/saturation.hpp"
-#include "fpbm/linalg/level_space.hpp"
-#include "fpbm/linalg/sums.hpp"
-#include "fpbm/singular/damped_level.hpp"
+#include "fpbm/limits/detail/box.hpp"
+#include "fpbm/limits/detail/rows.hpp"
+#include "fpbm/limits/detail/saturation.hpp"
+#include "fpbm/linalg/detail/level_space.hpp"
+#include "fpbm/linalg/detail/sums.hpp"
+#include "fpbm/singular/detail/damped_level.hpp"
 
 namespace fpbm {
 

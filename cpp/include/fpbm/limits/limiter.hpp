@@ -4,18 +4,18 @@
 #include <type_traits>
 #include <utility>
 
-#include "fpbm/limits/box_in_time.hpp"
-#include "fpbm/limits/braking.hpp"
-#include "fpbm/limits/inverse_task_metric.hpp"
-#include "fpbm/limits/least_squares_blend.hpp"
+#include "fpbm/limits/detail/box_in_time.hpp"
+#include "fpbm/limits/detail/braking.hpp"
+#include "fpbm/limits/detail/inverse_task_metric.hpp"
+#include "fpbm/limits/detail/least_squares_blend.hpp"
+#include "fpbm/limits/detail/one_level.hpp"
+#include "fpbm/limits/detail/reserved_limits.hpp"
+#include "fpbm/limits/detail/row_projection.hpp"
+#include "fpbm/limits/detail/tick_motions.hpp"
+#include "fpbm/limits/detail/toward_goal.hpp"
 #include "fpbm/limits/limits.hpp"
-#include "fpbm/limits/one_level.hpp"
-#include "fpbm/limits/reserved_limits.hpp"
-#include "fpbm/limits/row_projection.hpp"
-#include "fpbm/limits/tick_motions.hpp"
-#include "fpbm/limits/toward_goal.hpp"
-#include "fpbm/linalg/product.hpp"
-#include "fpbm/linalg/sums.hpp"
+#include "fpbm/linalg/detail/product.hpp"
+#include "fpbm/linalg/detail/sums.hpp"
 
 namespace fpbm {
 

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "fpbm/core/detail/validation.hpp"
 #include "fpbm/core/level.hpp"
-#include "fpbm/core/validation.hpp"
-#include "fpbm/limits/box.hpp"
-#include "fpbm/limits/jerk_limited_joint.hpp"
-#include "fpbm/limits/usable_bounds.hpp"
-#include "fpbm/limits/velocity_envelope.hpp"
+#include "fpbm/limits/detail/box.hpp"
+#include "fpbm/limits/detail/jerk_limited_joint.hpp"
+#include "fpbm/limits/detail/usable_bounds.hpp"
+#include "fpbm/limits/detail/velocity_envelope.hpp"
 #include "fpbm/model/joint.hpp"
 
 namespace fpbm {
@@ -125,22 +125,6 @@ class Limits {
       } else {
         good = good && -bounds_.acceleration(i) <= u && u <= bounds_.acceleration(i) && viable(i, to.q(i), to.qd(i));
       }
-    }
-    return good;
-  }
-
-  /// Whether differences of commanded positions keep the bounds V on velocity and A on acceleration in a tick of
-  /// varying acceleration: the mean velocity v = (to.q − from.q)/h is within V, and |v − qd| ≤ A h/2 at both ends of
-  /// the tick. For two consecutive ticks with the mean velocities v₁ and v₂, and the velocity qd between the ticks, the
-  /// second difference of positions is h (qd − v₁) + h (v₂ − qd), and therefore at most A h². For a tick of constant
-  /// acceleration within the bounds, the result is true up to round-off.
-  [[nodiscard]] bool admits_differences(const State<N, Scalar>& from, const State<N, Scalar>& to) const noexcept {
-    bool good = true;
-    for (Eigen::Index i = 0; i < to.q.size(); ++i) {
-      const Scalar v = (to.q.coeff(i) - from.q.coeff(i)) / tick_;
-      const Scalar change = bounds_.acceleration.coeff(i) * tick_ / Scalar(2);
-      good = good && std::abs(v) <= bounds_.velocity.coeff(i) && std::abs(v - from.qd.coeff(i)) <= change &&
-             std::abs(to.qd.coeff(i) - v) <= change;
     }
     return good;
   }

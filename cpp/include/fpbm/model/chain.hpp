@@ -7,10 +7,10 @@
 #include <string_view>
 #include <vector>
 
-#include "fpbm/core/rotation.hpp"
-#include "fpbm/core/validation.hpp"
-#include "fpbm/linalg/sums.hpp"
-#include "fpbm/linalg/three.hpp"
+#include "fpbm/core/detail/validation.hpp"
+#include "fpbm/geometry/rotation.hpp"
+#include "fpbm/linalg/detail/sums.hpp"
+#include "fpbm/linalg/detail/three.hpp"
 #include "fpbm/model/joint.hpp"
 
 namespace fpbm {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "fpbm/core/rotation.hpp"
-#include "fpbm/core/sincos.hpp"
+#include "fpbm/geometry/detail/sincos.hpp"
+#include "fpbm/geometry/rotation.hpp"
 #include "fpbm/model/chain.hpp"
 
 namespace fpbm {

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "fpbm/core/rotation.hpp"
 #include "fpbm/core/types.hpp"
-#include "fpbm/linalg/pair.hpp"
-#include "fpbm/linalg/split_vector.hpp"
-#include "fpbm/model/link.hpp"
+#include "fpbm/geometry/rotation.hpp"
+#include "fpbm/linalg/detail/pair.hpp"
+#include "fpbm/linalg/detail/split_vector.hpp"
+#include "fpbm/model/detail/link.hpp"
 
 namespace fpbm {
 

@@ -3,8 +3,8 @@
 #include <limits>
 #include <string>
 
-#include "fpbm/core/rotation.hpp"
 #include "fpbm/core/types.hpp"
+#include "fpbm/geometry/rotation.hpp"
 
 namespace fpbm {
 

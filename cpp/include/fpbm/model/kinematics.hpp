@@ -49,12 +49,6 @@ template <typename Space, int N, typename Scalar>
   return false;
 }
 
-/// Whether an arm has several tasks.
-template <typename Arm>
-[[nodiscard]] constexpr bool has_several_tasks(const Arm&) noexcept {
-  return false;
-}
-
 /// Sets kinematics.tip and kinematics.length at q: by arm.points(q, kinematics), if the arm has this function,
 /// otherwise by arm.kinematics(q, kinematics).
 template <typename Arm, typename Vector, typename Kinematics>

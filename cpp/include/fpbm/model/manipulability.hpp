@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "fpbm/core/mask.hpp"
+#include "fpbm/core/detail/mask.hpp"
 #include "fpbm/core/types.hpp"
-#include "fpbm/linalg/cholesky.hpp"
+#include "fpbm/linalg/detail/cholesky.hpp"
 #include "fpbm/model/kinematics.hpp"
 
 namespace fpbm {

@@ -2,11 +2,11 @@
 
 #include <type_traits>
 
-#include "fpbm/core/sincos.hpp"
-#include "fpbm/core/space.hpp"
-#include "fpbm/core/unrolled.hpp"
-#include "fpbm/core/validation.hpp"
-#include "fpbm/linalg/pair.hpp"
+#include "fpbm/core/detail/unrolled.hpp"
+#include "fpbm/core/detail/validation.hpp"
+#include "fpbm/geometry/detail/sincos.hpp"
+#include "fpbm/geometry/space.hpp"
+#include "fpbm/linalg/detail/pair.hpp"
 #include "fpbm/model/joint.hpp"
 #include "fpbm/model/kinematics.hpp"
 

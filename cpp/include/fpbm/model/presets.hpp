@@ -1,8 +1,8 @@
 #pragma once
 
 #include "fpbm/model/chain.hpp"
-#include "fpbm/model/dh_presets.hpp"
-#include "fpbm/model/frame_presets.hpp"
+#include "fpbm/model/detail/dh_presets.hpp"
+#include "fpbm/model/detail/frame_presets.hpp"
 
 /// Arms as specified by their manufacturers, from the base frame to the flange frame.
 ///

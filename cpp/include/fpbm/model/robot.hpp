@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 
-#include "fpbm/core/rotation.hpp"
-#include "fpbm/core/validation.hpp"
+#include "fpbm/core/detail/validation.hpp"
+#include "fpbm/geometry/rotation.hpp"
 #include "fpbm/model/chain.hpp"
-#include "fpbm/model/drives.hpp"
-#include "fpbm/model/link_tree.hpp"
-#include "fpbm/model/robot_state.hpp"
+#include "fpbm/model/detail/drives.hpp"
+#include "fpbm/model/detail/link_tree.hpp"
+#include "fpbm/model/detail/robot_state.hpp"
 #include "fpbm/model/tree.hpp"
 
 namespace fpbm {

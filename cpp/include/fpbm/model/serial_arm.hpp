@@ -5,19 +5,19 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "fpbm/core/rotation.hpp"
-#include "fpbm/core/sincos.hpp"
-#include "fpbm/core/space.hpp"
-#include "fpbm/core/unrolled.hpp"
-#include "fpbm/linalg/pair.hpp"
-#include "fpbm/linalg/sums.hpp"
+#include "fpbm/core/detail/unrolled.hpp"
+#include "fpbm/geometry/detail/sincos.hpp"
+#include "fpbm/geometry/rotation.hpp"
+#include "fpbm/geometry/space.hpp"
+#include "fpbm/linalg/detail/pair.hpp"
+#include "fpbm/linalg/detail/sums.hpp"
 #include "fpbm/model/chain.hpp"
-#include "fpbm/model/continuous_joints.hpp"
-#include "fpbm/model/forward_pass.hpp"
+#include "fpbm/model/detail/continuous_joints.hpp"
+#include "fpbm/model/detail/forward_pass.hpp"
+#include "fpbm/model/detail/link.hpp"
+#include "fpbm/model/detail/screws.hpp"
 #include "fpbm/model/frame.hpp"
 #include "fpbm/model/kinematics.hpp"
-#include "fpbm/model/link.hpp"
-#include "fpbm/model/screws.hpp"
 
 namespace fpbm {
 

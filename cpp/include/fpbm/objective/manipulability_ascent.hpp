@@ -2,12 +2,12 @@
 
 #include <utility>
 
+#include "fpbm/core/detail/validation.hpp"
 #include "fpbm/core/status.hpp"
-#include "fpbm/core/validation.hpp"
-#include "fpbm/linalg/null_basis.hpp"
+#include "fpbm/linalg/detail/null_basis.hpp"
 #include "fpbm/model/manipulability.hpp"
 #include "fpbm/objective/null_space.hpp"
-#include "fpbm/task/reference.hpp"
+#include "fpbm/path/reference.hpp"
 
 namespace fpbm {
 

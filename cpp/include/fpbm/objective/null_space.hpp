@@ -4,10 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include "fpbm/core/detail/validation.hpp"
 #include "fpbm/core/level.hpp"
-#include "fpbm/core/validation.hpp"
-#include "fpbm/linalg/entrywise.hpp"
-#include "fpbm/model/continuous_joints.hpp"
+#include "fpbm/linalg/detail/entrywise.hpp"
+#include "fpbm/model/detail/continuous_joints.hpp"
 #include "fpbm/model/joint.hpp"
 
 namespace fpbm {

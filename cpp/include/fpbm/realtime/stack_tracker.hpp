@@ -1,13 +1,13 @@
 #pragma once
 
-#include "fpbm/limits/saturation_by_level.hpp"
-#include "fpbm/realtime/lower_levels.hpp"
-#include "fpbm/realtime/require_stable.hpp"
-#include "fpbm/realtime/stack_tick.hpp"
+#include "fpbm/limits/detail/saturation_by_level.hpp"
+#include "fpbm/realtime/detail/lower_levels.hpp"
+#include "fpbm/realtime/detail/require_stable.hpp"
+#include "fpbm/realtime/detail/stack_tick.hpp"
 #include "fpbm/realtime/tracker.hpp"
-#include "fpbm/scheme/by_levels.hpp"
-#include "fpbm/task/robot_tasks.hpp"
-#include "fpbm/task/task_gains.hpp"
+#include "fpbm/scheme/detail/by_levels.hpp"
+#include "fpbm/task/detail/robot_tasks.hpp"
+#include "fpbm/task/detail/task_gains.hpp"
 
 namespace fpbm {
 

@@ -5,7 +5,7 @@
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/model/kinematics.hpp"
-#include "fpbm/scheme/set_damping.hpp"
+#include "fpbm/scheme/detail/set_damping.hpp"
 #include "fpbm/singular/damping.hpp"
 
 namespace fpbm {

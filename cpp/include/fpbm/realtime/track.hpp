@@ -2,9 +2,9 @@
 
 #include "fpbm/core/status.hpp"
 #include "fpbm/model/kinematics.hpp"
-#include "fpbm/sim/motion.hpp"
-#include "fpbm/sim/rollout.hpp"
-#include "fpbm/sim/time_grid.hpp"
+#include "fpbm/simulate/detail/motion.hpp"
+#include "fpbm/simulate/rollout.hpp"
+#include "fpbm/simulate/time_grid.hpp"
 
 namespace fpbm {
 

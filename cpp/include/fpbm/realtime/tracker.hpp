@@ -2,21 +2,21 @@
 
 #include <array>
 
-#include "fpbm/realtime/account.hpp"
-#include "fpbm/realtime/desire.hpp"
-#include "fpbm/realtime/held_level.hpp"
-#include "fpbm/realtime/joint_approach.hpp"
-#include "fpbm/realtime/limit.hpp"
-#include "fpbm/realtime/measured_limiter.hpp"
-#include "fpbm/realtime/prove.hpp"
-#include "fpbm/realtime/reference_sources.hpp"
-#include "fpbm/realtime/require_stable.hpp"
+#include "fpbm/realtime/detail/account.hpp"
+#include "fpbm/realtime/detail/desire.hpp"
+#include "fpbm/realtime/detail/held_level.hpp"
+#include "fpbm/realtime/detail/joint_approach.hpp"
+#include "fpbm/realtime/detail/limit.hpp"
+#include "fpbm/realtime/detail/measured_limiter.hpp"
+#include "fpbm/realtime/detail/prove.hpp"
+#include "fpbm/realtime/detail/reference_sources.hpp"
+#include "fpbm/realtime/detail/require_stable.hpp"
+#include "fpbm/realtime/detail/tick_references.hpp"
+#include "fpbm/realtime/detail/turns.hpp"
 #include "fpbm/realtime/tick.hpp"
-#include "fpbm/realtime/tick_references.hpp"
-#include "fpbm/realtime/turns.hpp"
-#include "fpbm/scheme/set_damping.hpp"
-#include "fpbm/sim/closed_loop.hpp"
-#include "fpbm/singular/damped_gram.hpp"
+#include "fpbm/scheme/detail/set_damping.hpp"
+#include "fpbm/simulate/detail/closed_loop.hpp"
+#include "fpbm/singular/detail/damped_gram.hpp"
 
 /// One tick of a control loop.
 ///

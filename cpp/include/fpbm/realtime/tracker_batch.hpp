@@ -5,15 +5,15 @@
 #include <utility>
 #include <vector>
 
-#include "fpbm/core/lane_access.hpp"
-#include "fpbm/core/validation.hpp"
-#include "fpbm/realtime/path_follower.hpp"
-#include "fpbm/realtime/tick_references.hpp"
-#include "fpbm/scheme/set_damping.hpp"
-#include "fpbm/sim/closed_loop.hpp"
-#include "fpbm/sim/motion.hpp"
-#include "fpbm/sim/rollout.hpp"
-#include "fpbm/sim/time_grid.hpp"
+#include "fpbm/core/detail/lane_access.hpp"
+#include "fpbm/core/detail/validation.hpp"
+#include "fpbm/path/path_follower.hpp"
+#include "fpbm/realtime/detail/tick_references.hpp"
+#include "fpbm/scheme/detail/set_damping.hpp"
+#include "fpbm/simulate/detail/closed_loop.hpp"
+#include "fpbm/simulate/detail/motion.hpp"
+#include "fpbm/simulate/rollout.hpp"
+#include "fpbm/simulate/time_grid.hpp"
 
 namespace fpbm {
 

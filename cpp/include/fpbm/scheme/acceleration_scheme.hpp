@@ -4,14 +4,14 @@
 #include <utility>
 
 #include "fpbm/core/level.hpp"
-#include "fpbm/core/space.hpp"
-#include "fpbm/linalg/product.hpp"
-#include "fpbm/linalg/sums.hpp"
+#include "fpbm/geometry/space.hpp"
+#include "fpbm/linalg/detail/product.hpp"
+#include "fpbm/linalg/detail/sums.hpp"
 #include "fpbm/objective/null_space.hpp"
-#include "fpbm/scheme/least_norm.hpp"
+#include "fpbm/scheme/detail/least_norm.hpp"
 #include "fpbm/scheme/weights.hpp"
 #include "fpbm/singular/damping.hpp"
-#include "fpbm/task/feedback.hpp"
+#include "fpbm/task/detail/feedback.hpp"
 
 namespace fpbm {
 

@@ -3,7 +3,7 @@
 #include <type_traits>
 
 #include "fpbm/scheme/acceleration_scheme.hpp"
-#include "fpbm/scheme/dense_weights.hpp"
+#include "fpbm/scheme/detail/dense_weights.hpp"
 #include "fpbm/scheme/velocity_scheme.hpp"
 
 /// Schemes of the paper by name, with equation numbers of the paper (docs/equations.md): FPBM<7>(0.6, weights, 10, 25).

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fpbm/core/validation.hpp"
-#include "fpbm/linalg/entrywise.hpp"
-#include "fpbm/linalg/pair.hpp"
-#include "fpbm/linalg/product.hpp"
+#include "fpbm/core/detail/validation.hpp"
+#include "fpbm/linalg/detail/entrywise.hpp"
+#include "fpbm/linalg/detail/pair.hpp"
+#include "fpbm/linalg/detail/product.hpp"
 
 /// Weights W of the joint motion, symmetric and positive definite, as three types with increasing cost. The third type,
 /// DenseWeights, is in dense_weights.hpp.

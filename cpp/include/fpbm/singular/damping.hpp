@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fpbm/core/validation.hpp"
+#include "fpbm/core/detail/validation.hpp"
 
 namespace fpbm {
 

@@ -1,12 +1,12 @@
 #pragma once
 
-#include "fpbm/core/direction.hpp"
-#include "fpbm/linalg/entrywise.hpp"
-#include "fpbm/linalg/sums.hpp"
-#include "fpbm/model/link.hpp"
-#include "fpbm/task/link_frame.hpp"
-#include "fpbm/task/task_gains.hpp"
-#include "fpbm/task/task_rows.hpp"
+#include "fpbm/geometry/detail/direction.hpp"
+#include "fpbm/linalg/detail/entrywise.hpp"
+#include "fpbm/linalg/detail/sums.hpp"
+#include "fpbm/model/detail/link.hpp"
+#include "fpbm/task/detail/link_frame.hpp"
+#include "fpbm/task/detail/task_gains.hpp"
+#include "fpbm/task/detail/task_rows.hpp"
 
 namespace fpbm {
 

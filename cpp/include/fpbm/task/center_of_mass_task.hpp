@@ -2,11 +2,11 @@
 
 #include <array>
 
-#include "fpbm/core/space.hpp"
-#include "fpbm/model/center_of_mass.hpp"
+#include "fpbm/geometry/space.hpp"
+#include "fpbm/model/detail/center_of_mass.hpp"
+#include "fpbm/task/detail/task_gains.hpp"
+#include "fpbm/task/detail/task_rows.hpp"
 #include "fpbm/task/position_task.hpp"
-#include "fpbm/task/task_gains.hpp"
-#include "fpbm/task/task_rows.hpp"
 
 namespace fpbm {
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "fpbm/core/orientation.hpp"
-#include "fpbm/task/link_frame.hpp"
-#include "fpbm/task/task_gains.hpp"
-#include "fpbm/task/task_rows.hpp"
+#include "fpbm/geometry/detail/orientation.hpp"
+#include "fpbm/task/detail/link_frame.hpp"
+#include "fpbm/task/detail/task_gains.hpp"
+#include "fpbm/task/detail/task_rows.hpp"
 
 namespace fpbm {
 

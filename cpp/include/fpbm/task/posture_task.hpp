@@ -2,9 +2,9 @@
 
 #include <array>
 
-#include "fpbm/core/joint_space.hpp"
-#include "fpbm/task/link_frame.hpp"
-#include "fpbm/task/task_gains.hpp"
+#include "fpbm/geometry/detail/joint_space.hpp"
+#include "fpbm/task/detail/link_frame.hpp"
+#include "fpbm/task/detail/task_gains.hpp"
 
 namespace fpbm {
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "fpbm/task/link_frame.hpp"
+#include "fpbm/task/detail/link_frame.hpp"
+#include "fpbm/task/detail/task_rows.hpp"
 #include "fpbm/task/pose_task.hpp"
-#include "fpbm/task/task_rows.hpp"
 
 namespace fpbm {
 

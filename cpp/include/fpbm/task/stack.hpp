@@ -5,8 +5,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "fpbm/core/product_space.hpp"
-#include "fpbm/core/validation.hpp"
+#include "fpbm/core/detail/validation.hpp"
+#include "fpbm/geometry/detail/product_space.hpp"
 
 namespace fpbm {
 

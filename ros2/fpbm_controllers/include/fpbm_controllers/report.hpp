@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <diagnostic_msgs/msg/diagnostic_status.hpp>
-#include <fpbm/core/rotation.hpp>
 #include <fpbm/core/status.hpp>
+#include <fpbm/geometry/rotation.hpp>
 #include <rclcpp/time.hpp>
 #include <string>
 #include <vector>

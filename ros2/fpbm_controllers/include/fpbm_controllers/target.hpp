@@ -2,8 +2,8 @@
 
 #include <cmath>
 #include <cstdint>
-#include <fpbm/core/rotation.hpp>
-#include <fpbm/core/space.hpp>
+#include <fpbm/geometry/rotation.hpp>
+#include <fpbm/geometry/space.hpp>
 #include <geometry_msgs/msg/pose_stamped.hpp>
 #include <geometry_msgs/msg/twist_stamped.hpp>
 #include <optional>

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "fpbm/linalg/detail/three.hpp"
+#include "fpbm/model/tree.hpp"
+
+namespace fpbm {
+
+/// Bounds on the displacement of points of links by each joint, valid in every posture (docs/clearance_proof.md, "Near
+/// pairs").
+template <typename Scalar = double>
+class Levers {
+ public:
+  using JointVector = Vector<Eigen::Dynamic, Scalar>;
+
+  /// source: a checked Tree or Chain.
+  template <typename Source>
+  explicit Levers(const Source& source) {
+    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(source.joints.size()); ++i) {
+      const auto& joint = joint_of(source, i);
+      const bool turns = joint.type != JointType::kPrismatic;
+      using std::abs;
+      const Scalar range = turns ? Scalar(0) : std::max(abs(joint.bounds.lower), abs(joint.bounds.upper));
+      joints_.push_back({joint.placement.p, normalized(joint.axis), range, turns, parent_of(source, i)});
+    }
+  }
+
+  /// Levers r_k ≥ ‖∂x/∂q_k‖ of a point x of a link, in every posture [m/rad, or 1 for a prismatic joint]. point: x in
+  /// the frame of the link [m].
+  ///
+  /// The distance from x to the axis of a revolute joint is at most the length of the chain from the axis to x, without
+  /// the component of the first link along the axis. A lever is infinite if a prismatic joint without bounds is in this
+  /// chain, and 0 if joint k does not move the link.
+  [[nodiscard]] JointVector operator()(int link, const Vector<3, Scalar>& point) const {
+    JointVector lever = filled<JointVector>(static_cast<Eigen::Index>(joints_.size()));
+    Scalar beyond = Scalar(0);  // Length of the chain from the origin of the next joint to the point [m].
+    Vector<3, Scalar> step = point;
+    while (link > 0) {
+      const auto& [place, axis, range, turns, parent] = joints_[static_cast<std::size_t>(link - 1)];
+      lever(link - 1) = turns ? norm(cross(axis, step)) + beyond : Scalar(1);
+      beyond += norm(step) + range;
+      step = place;
+      link = parent;
+    }
+    return lever;
+  }
+
+ private:
+  struct Joint {
+    Vector<3, Scalar> place;  ///< In the frame of the link that carries the joint.
+    Vector<3, Scalar> axis;   ///< Unit vector.
+    Scalar range;             ///< Largest displacement of a prismatic joint from zero [m].
+    bool turns;
+    int parent;
+  };
+
+  std::vector<Joint> joints_;
+};
+
+}  // namespace fpbm

@@ -1,0 +1,258 @@
+#pragma once
+
+#include <algorithm>
+#include <bitset>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "fpbm/limits/detail/box.hpp"
+#include "fpbm/limits/detail/held_joints.hpp"
+#include "fpbm/limits/detail/rows.hpp"
+#include "fpbm/limits/detail/saturated_motion.hpp"
+#include "fpbm/linalg/detail/level_space.hpp"
+#include "fpbm/linalg/detail/null_basis.hpp"
+#include "fpbm/linalg/detail/self_motion.hpp"
+#include "fpbm/linalg/detail/sums.hpp"
+
+namespace fpbm {
+
+/// Saturation in the null space (Flacco, De Luca and Khatib 2012, 2015; docs/limits.md, Saturation in the null space):
+/// the joint motion u within a box that realises as much as possible of a desired motion,
+///
+///   J u = J rest + s J (desired − rest),   s ≤ 1 as large as possible,
+///
+/// where `rest` is a braking motion within the box. The algorithm starts from u = rest and s = 0, and raises s. If a
+/// joint meets its bound, the joint is held on the bound, and other joints compensate by the null-space motion of least
+/// norm in the units of the joints. If no null-space motion can compensate, a joint whose bound blocks the task is
+/// released, as in the simplex method. If no joint can be released, s is the optimum of a linear program. Each bound
+/// that is met costs one pass. There are at most 3n passes (random problems need up to 1.7n). After every pass, u is in
+/// the box and on the line of the task.
+///
+/// Further rows g·u ≤ b, at most P, are treated as additional joints: the motion of row k is g_k·u, and its row of the
+/// basis is g_kᵀZ. If `rest` violates a row, the bound of this row is increased so far that `rest` satisfies the row.
+template <int M, int N, typename Scalar, int P = 0>
+class NullSpaceSaturation {
+ public:
+  using JointVector = Vector<N, Scalar>;
+
+  /// unit: unit of each joint's motion, for example its bound on acceleration.
+  NullSpaceSaturation(const Matrix<M, N, Scalar>& J, const JointVector& unit,
+                      const Rows<N, P, Scalar>& rows = {}) noexcept
+      : unit_(unit), rows_(rows) {
+    const Eigen::Index n = J.cols();
+    Eigen::Index all = n;
+    if constexpr (P > 0) all += rows.count;
+    if (!set_self_motion(J, all)) {
+      Matrix<M, N, Scalar> scaled = J;
+      for (Eigen::Index j = 0; j < n; ++j) {
+        for (Eigen::Index i = 0; i < J.rows(); ++i) scaled.coeffRef(i, j) *= unit.coeff(j);
+      }
+      const RowSpace<M, N, Scalar> space(scaled);
+      Z_.resize(all, n - space.rank());
+      JointVector column = unit;
+      for (Eigen::Index j = 0; j < Z_.cols(); ++j) {
+        space.column(space.rank() + j, column);
+        for (Eigen::Index i = 0; i < n; ++i) Z_.coeffRef(i, j) = column.coeff(i);
+      }
+    }
+    add_rows(n);
+  }
+
+  /// Saturation in the null space of task levels, whose rows are in the units of the joints.
+  NullSpaceSaturation(const LevelSpace<N, Scalar>& space, const JointVector& unit,
+                      const Rows<N, P, Scalar>& rows = {}) noexcept
+      : unit_(unit), rows_(rows) {
+    const Eigen::Index n = space.size();
+    Eigen::Index all = n;
+    if constexpr (P > 0) all += rows.count;
+    Z_.resize(all, n - space.rank());
+    Z_.topRows(n) = space.basis();
+    add_rows(n);
+  }
+
+  /// Limits the null-space motion that compensates for held joints to a multiple of `desired − rest`
+  /// (kLargestCompensation), for a control loop. Then s may be below its optimum if the optimum needs more.
+  void limit_compensation() noexcept { compensation_ = kLargestCompensation; }
+
+  [[nodiscard]] SaturatedMotion<N, Scalar> operator()(const Box<N, Scalar>& box, const JointVector& rest,
+                                                      const JointVector& desired) noexcept {
+    using std::abs;
+    const Eigen::Index joints = desired.size();
+    const Eigen::Index n = Z_.rows();
+    All goal(n);
+    All upper(n);
+    All lower(n);
+    for (Eigen::Index i = 0; i < joints; ++i) {
+      goal.coeffRef(i) = (desired.coeff(i) - rest.coeff(i)) / unit_.coeff(i);
+      upper.coeffRef(i) = (box.upper.coeff(i) - rest.coeff(i)) / unit_.coeff(i);
+      lower.coeffRef(i) = (box.lower.coeff(i) - rest.coeff(i)) / unit_.coeff(i);
+    }
+    if constexpr (P > 0) {
+      const Eigen::Index count = n - joints;
+      for (Eigen::Index k = 0; k < count; ++k) {
+        goal(joints + k) = rows_.change(k, rest, desired);
+        upper(joints + k) = std::max(-rows_.excess(k, rest), Scalar(0));
+        lower(joints + k) = -std::numeric_limits<Scalar>::infinity();
+      }
+    }
+    SaturatedMotion<N, Scalar> result{rest, Scalar(0), 0, 0};
+    hit_.reset();
+    const Scalar given = largest_magnitude(goal);
+    held_.begin(std::min(Held::kSteepest, compensation_ * given));
+    All u(n);
+    for (Eigen::Index i = 0; i < n; ++i) u.coeffRef(i) = Scalar(0);
+    const auto round_off = [&](Scalar fastest) noexcept {
+      Scalar size(0);
+      for (Eigen::Index i = 0; i < joints; ++i) {
+        size = std::max(size, (abs(desired.coeff(i)) + abs(rest.coeff(i))) / unit_.coeff(i));
+      }
+      return Held::kRoundOff * (fastest + given) + kStill * size;
+    };
+    const All preferred = null_space_part(goal, joints);
+    for (Eigen::Index i = 0; i < n; ++i) goal.coeffRef(i) -= preferred.coeff(i);
+    result.scale = move(u, goal, lower, upper, round_off, result);
+    const All compensation = null_space_part(u, joints);
+    for (Eigen::Index i = 0; i < n; ++i) goal.coeffRef(i) = preferred.coeff(i) - compensation.coeff(i);
+    if (largest_magnitude(goal) > Held::kRoundOff * given) {
+      held_.begin(Held::kSteepest);
+      (void)move(u, goal, lower, upper, round_off, result);
+    }
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const bool above = u.coeff(i) == upper.coeff(i);
+      if (!hit_[static_cast<std::size_t>(i)] || (!above && u.coeff(i) != lower.coeff(i))) continue;
+      if (i >= joints) {
+        result.rows |= std::uint32_t(1) << (i - joints);
+        continue;
+      }
+      result.joints |= joint_bit(i);
+    }
+    result.u =
+        box.nearest(entrywise(rest, [&](Eigen::Index i) { return rest.coeff(i) + unit_.coeff(i) * u.coeff(i); }));
+    for (Eigen::Index i = 0; i < joints; ++i) {
+      if ((result.joints >> i & 1U) == 0) continue;
+      result.u.coeffRef(i) = u.coeff(i) == upper.coeff(i) ? box.upper.coeff(i) : box.lower.coeff(i);
+    }
+    return result;
+  }
+
+ private:
+  static constexpr int kAll = P == 0 ? N : Eigen::Dynamic;
+  static constexpr int kMost = kCapacity<N>;
+  using All = Eigen::Matrix<Scalar, kAll, 1, Eigen::ColMajor | Eigen::DontAlign, kMost + P, 1>;  ///< Joints, then rows.
+  using Basis = Eigen::Matrix<Scalar, kAll, Eigen::Dynamic, Eigen::ColMajor | Eigen::DontAlign, kMost + P, kMost>;
+  using Held = HeldJoints<kMost, kMost + P, Scalar>;
+
+  // `fpbm_tests --gtest_filter='DegenerateSaturation*'` passes with the ranges below.
+
+  /// Smallest |v|² of a self-motion v in SelfMotion, as a fraction of the largest possible |v|². |v| is then at least
+  /// 1/100 of its largest possible length, and v has lost at most two digits. Range: 1e-8 to 1e-2.
+  static constexpr Scalar kRegular = Scalar(1e-4);
+  /// Largest number of passes for each joint or row. With 2, the tests pass; with 1, 46 of the 16,500 problems are not
+  /// solved. `fpbm_tests --gtest_filter='*Saturation*'` prints the largest number of passes.
+  static constexpr int kPasses = 3;
+  /// Largest null-space motion of limit_compensation(), relative to the largest entry of desired − rest. If a joint on
+  /// its bound hardly moves in the null space, the other joints would have to move by whole units to hold back 1e-8 of
+  /// a unit, with a sign that changes from tick to tick. StackRest.a_joint_on_its_bound_causes_no_pulses passes with
+  /// 1e5 and 1e6, and fails with 1e7. With 1e4, tests of `LevelSaturation*` fail: scales are below their optimum by
+  /// more than 1e-6.
+  static constexpr Scalar kLargestCompensation = Scalar(1e6);
+  /// A rate up to this fraction of the largest rate is round-off error: a joint with a smaller rate does not move.
+  /// Range: ε to 1000 ε. With 16,000 ε, a motion leaves the line of the task.
+  static constexpr Scalar kStill = Scalar(16) * std::numeric_limits<Scalar>::epsilon();
+
+  /// Sets Z for an arm with one self-motion v, away from singular postures: v in the units of the joints, with
+  /// length 1. For other arms and postures, returns false.
+  [[nodiscard]] bool set_self_motion([[maybe_unused]] const Matrix<M, N, Scalar>& J,
+                                     [[maybe_unused]] Eigen::Index rows) noexcept {
+    if constexpr (kHasSelfMotion<M, N>) {
+      SelfMotion<M, N, Scalar> motion;
+      for (int kind = 0; kind < motion.kKinds; ++kind) {
+        if (!motion.factor(J, kind, kRegular)) continue;
+        Z_.resize(rows, 1);
+        const JointVector v = motion.null();
+        const JointVector in_units = entrywise(v, [&](Eigen::Index i) { return v.coeff(i) / unit_.coeff(i); });
+        const Scalar length = norm(in_units);
+        for (Eigen::Index i = 0; i < N; ++i) Z_.coeffRef(i, 0) = in_units.coeff(i) / length;
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// Appends the rows gᵀZ of the further bounds to the n rows of the joints. Scales each g to length 1 in the units of
+  /// the joints.
+  void add_rows([[maybe_unused]] Eigen::Index n) noexcept {
+    if constexpr (P > 0) {
+      for (Eigen::Index k = 0; k < rows_.count; ++k) {
+        JointVector g = column(rows_.g, k);
+        const Scalar length = norm(entrywise(g, [&](Eigen::Index i) { return g.coeff(i) * unit_.coeff(i); }));
+        const Scalar scale = length > Scalar(0) ? Scalar(1) / length : Scalar(0);
+        g = entrywise(g, [&](Eigen::Index i) { return scale * g.coeff(i); });
+        set_column(rows_.g, k, g);
+        rows_.b(k) *= scale;
+        for (Eigen::Index j = 0; j < Z_.cols(); ++j) {
+          Z_(n + k, j) = sum_over(g, [&](Eigen::Index i) { return g.coeff(i) * unit_.coeff(i) * Z_.coeff(i, j); });
+        }
+      }
+    }
+  }
+
+  /// Z Zᵀv, over the joints.
+  [[nodiscard]] All null_space_part(const All& v, Eigen::Index joints) const noexcept {
+    All part(v.size());
+    for (Eigen::Index i = 0; i < v.size(); ++i) part.coeffRef(i) = Scalar(0);
+    for (Eigen::Index j = 0; j < Z_.cols(); ++j) {
+      Scalar along(0);
+      for (Eigen::Index i = 0; i < joints; ++i) along += Z_.coeff(i, j) * v.coeff(i);
+      for (Eigen::Index i = 0; i < v.size(); ++i) part.coeffRef(i) += along * Z_.coeff(i, j);
+    }
+    return part;
+  }
+
+  /// Moves u along the goal and null-space motion, until the fraction of the goal is 1 or the bounds admit no more.
+  /// Returns this fraction.
+  template <typename RoundOff>
+  [[nodiscard]] Scalar move(All& u, const All& goal, const All& lower, const All& upper, const RoundOff& round_off,
+                            SaturatedMotion<N, Scalar>& result) noexcept {
+    using std::abs;
+    const Eigen::Index n = u.size();
+    Scalar scale(0);
+    for (Eigen::Index pass = 0; pass < kPasses * n; ++pass) {
+      ++result.passes;
+      const All rate = held_.direction(Z_, goal);
+      const Scalar fastest = largest_magnitude(rate);
+      if (fastest > held_.steepest()) break;
+      const Scalar still = kStill * fastest;
+      Scalar step = Scalar(1) - scale;
+      Eigen::Index hit = -1;
+      for (Eigen::Index i = 0; i < n; ++i) {
+        if (!(abs(rate(i)) > still) || held_.has(i)) continue;
+        const Scalar distance = ((rate(i) > Scalar(0) ? upper(i) : lower(i)) - u(i)) / rate(i);
+        if (distance < step) {
+          step = distance > Scalar(0) ? distance : Scalar(0);
+          hit = i;
+        }
+      }
+      for (Eigen::Index i = 0; i < n; ++i) u.coeffRef(i) += step * rate.coeff(i);
+      if (hit < 0) return Scalar(1);
+      scale += step;
+      const bool above = rate(hit) > Scalar(0);
+      u(hit) = above ? upper(hit) : lower(hit);
+      hit_[static_cast<std::size_t>(hit)] = true;
+      if (!held_.hold(Z_, hit, above, abs(rate(hit)), Scalar(1) - scale, [&]() noexcept { return round_off(fastest); }))
+        break;
+    }
+    return scale;
+  }
+
+  Basis Z_;  ///< Basis of the null space in the units of the joints.
+  JointVector unit_;
+  Scalar compensation_ = std::numeric_limits<Scalar>::infinity();
+  Rows<N, P, Scalar> rows_;  ///< Scaled to length 1.
+  Held held_;
+  std::bitset<kMost + P> hit_;  ///< Whether a joint or row has met a bound.
+};
+
+}  // namespace fpbm

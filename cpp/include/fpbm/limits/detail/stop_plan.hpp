@@ -1,0 +1,237 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "fpbm/core/detail/quickest_stop.hpp"
+#include "fpbm/limits/detail/stop_profile.hpp"
+#include "fpbm/limits/limits.hpp"
+
+namespace fpbm {
+
+/// Bounds on the joint displacements during a motion: at any time, the displacement from the start is
+/// s·line + t·ramp_correction + o [rad] or [m]. s and t increase from 0 to 1, and each entry of o is between low and
+/// high.
+template <int N, typename Scalar = double>
+struct StopDisplacement {
+  Vector<N, Scalar> line;             ///< Displacement at the constant velocity after the ramp.
+  Vector<N, Scalar> ramp_correction;  ///< Correction of `line` for the last tick and the ramp.
+  Vector<N, Scalar> low;              ///< ≤ 0
+  Vector<N, Scalar> high;             ///< ≥ 0
+  /// Velocities in which the motion begins [rad/s]: before the last tick, or in the last tick at velocity level, where
+  /// the velocities of a tick are constant. s·line + t·ramp_correction is a combination of `start_velocity` and
+  /// −ramp_correction with non-negative coefficients (docs/clearance_proof.md, "First-order terms").
+  Vector<N, Scalar> start_velocity;
+
+  /// Displacement of n joints at rest.
+  [[nodiscard]] static StopDisplacement none(Eigen::Index n) {
+    const Vector<N, Scalar> zero = Vector<N, Scalar>::Zero(n);
+    return {zero, zero, zero, zero, zero};
+  }
+};
+
+/// Stopping trajectory from a viable state, known in closed form until rest (docs/clearance_proof.md, Stopping
+/// trajectory).
+///
+/// In the first phase, the ramp, all joints reduce their accelerations to zero. In the second phase, all joints brake
+/// in proportion, with the profile of the slowest joint. The path in joint space stays close to the straight line along
+/// the present velocity. A joint that would violate its bounds follows its own shortest stop. All states of the
+/// trajectory are viable.
+template <Level kLevel, int N, typename Scalar = double>
+class StopPlan {
+ public:
+  using JointVector = Vector<N, Scalar>;
+  using JointLimits = Limits<kLevel, N, Scalar>;
+
+  /// Plan of an arm at rest.
+  explicit StopPlan(Eigen::Index dof) : last_(JointVector::Zero(dof)), velocity_(JointVector::Zero(dof)) {}
+
+  /// Plan from a viable state after a tick with the acceleration `last`.
+  StopPlan(const JointLimits& limits, const State<N, Scalar>& state, const JointVector& last) noexcept
+      : last_(last), velocity_(state.qd) {
+    const Scalar h = limits.tick();
+    const auto& bounds = limits.bounds();
+    for (Eigen::Index i = 0; i < last.size(); ++i) {
+      using std::abs;
+      if (limits.bounds_jerk(i)) ramp_ticks_ = std::max(ramp_ticks_, ticks_for(abs(last(i)), h * bounds.jerk(i)));
+    }
+    velocity_ += h * ramp_velocity_change() * last;
+    for (Eigen::Index i = 0; i < last.size(); ++i) {
+      profile_ =
+          profile_.together(StopProfile<Scalar>::quickest(velocity_(i), bounds.acceleration(i), bounds.jerk(i), h));
+    }
+    profile_.wait = ramp_ticks_;
+    for (Eigen::Index i = 0; i < last.size(); ++i) {
+      if (!keeps_bounds(limits, i, state)) stops_alone_ |= joint_bit(i);
+    }
+  }
+
+  /// Displacement bounds from the state `before` the last tick until rest. start: state after the last tick, at the
+  /// start of the plan.
+  [[nodiscard]] StopDisplacement<N, Scalar> displacement(const JointLimits& limits, const State<N, Scalar>& before,
+                                                         const State<N, Scalar>& start) const noexcept {
+    using std::abs;
+    const Eigen::Index n = last_.size();
+    const Scalar h = limits.tick();
+    StopDisplacement<N, Scalar> result = StopDisplacement<N, Scalar>::none(n);
+    const Scalar ticks = Scalar(1) + profile_.coasting_ticks(kLevel);
+    // Deficit of the displacement in the last tick, compared with a tick at the velocity after the ramp, divided by h²
+    // last_. At velocity level, the displacement of the last tick is h times the velocity at the end of the tick.
+    const Scalar tick_deficit = ramp_velocity_change() + (kLevel == Level::kVelocity ? Scalar(0) : Scalar(0.5));
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (!stops_alone(i)) {
+        result.line(i) = h * ticks * velocity_(i);
+        result.ramp_correction(i) = -h * h * (tick_deficit + ramp_deficit()) * last_(i);
+        result.start_velocity(i) = kLevel == Level::kVelocity ? start.qd(i) : before.qd(i);
+        continue;
+      }
+      const auto [low, high] = single_stop_displacement(limits, i, start.qd(i));
+      const Scalar tick = start.q(i) - before.q(i);
+      // Within a tick of constant acceleration a, the position leaves the interval between its end points by h²|a|/8 at
+      // most.
+      const Scalar between = kLevel == Level::kVelocity ? Scalar(0) : h * h / Scalar(8) * abs(last_(i));
+      result.low(i) = std::min(tick, Scalar(0)) - between + low;
+      result.high(i) = std::max(tick, Scalar(0)) + between + high;
+    }
+    return result;
+  }
+
+  /// Accelerations of the next tick of the plan. state: state at the start of the tick. before: accelerations of the
+  /// last tick. Advances the plan by one tick.
+  [[nodiscard]] JointVector next(const JointLimits& limits, const State<N, Scalar>& state,
+                                 const JointVector& before) noexcept {
+    const Scalar h = limits.tick();
+    JointVector u(before.size());
+    for (Eigen::Index i = 0; i < u.size(); ++i) {
+      if (stops_alone(i)) {
+        u(i) = quickest(limits, i, state, before);
+      } else if (k_ < ramp_ticks_) {
+        u(i) = last_(i) * (Scalar(1) - (k_ + Scalar(1)) / ramp_ticks_);
+      } else if (k_ + Scalar(1) < profile_.ticks()) {
+        u(i) = -profile_.removed_fraction(k_) * velocity_(i) / h;
+      } else {
+        u(i) = -state.qd(i) / h;  // Exactly to rest.
+      }
+    }
+    k_ += Scalar(1);
+    return u;
+  }
+
+  /// Number of ticks at the velocity after the ramp that cover the stopping distance of the plan.
+  [[nodiscard]] Scalar coasting_ticks() const noexcept { return profile_.coasting_ticks(kLevel); }
+
+  /// coasting_ticks() without rounding to whole ticks, approximately: a continuous function of the state.
+  [[nodiscard]] Scalar smooth_coasting_ticks(const JointLimits& limits) const noexcept {
+    using std::abs;
+    Scalar most(0);
+    for (Eigen::Index i = 0; i < velocity_.size(); ++i) {
+      const Scalar speed = abs(velocity_(i));
+      if (!(speed > Scalar(0))) continue;
+      const Scalar deceleration = limits.bounds().acceleration(i);
+      const Scalar distance = limits.bounds_jerk(i)
+                                  ? QuickestStop<Scalar>{deceleration, limits.bounds().jerk(i)}.stopping_distance(speed)
+                                  : speed * speed / (Scalar(2) * deceleration);
+      most = std::max(most, distance / (limits.tick() * speed));
+    }
+    return profile_.wait + most;
+  }
+
+  /// Change of the velocity due to an acceleration u of the next tick, until u has decreased to zero, divided by h u:
+  /// 1 for the tick itself, plus (r − 1)/2 for a ramp of r ticks. r is the largest A/(h J) of all joints, rounded up.
+  [[nodiscard]] static Scalar acting_ticks(const JointLimits& limits) noexcept {
+    Scalar most(0);
+    for (Eigen::Index i = 0; i < limits.bounds().jerk.size(); ++i) {
+      if (!limits.bounds_jerk(i)) continue;
+      most = std::max(most, ticks_for(limits.bounds().acceleration(i), limits.tick() * limits.bounds().jerk(i)));
+    }
+    return Scalar(1) + std::max(most - Scalar(1), Scalar(0)) / Scalar(2);
+  }
+
+  /// Number of ticks until rest.
+  [[nodiscard]] Scalar ticks_left() const noexcept { return std::max(profile_.ticks() - k_, Scalar(0)); }
+
+ private:
+  /// Number of ticks in which an acceleration changes to zero by at most `change` in each tick. Accelerations at the
+  /// bound on jerk are multiples of `change` up to the round-off error of a difference of velocities, about 300 ε for
+  /// 2 rad/s, 1 ms and 7500 rad/s³. Because of the tolerance of 512 ε, the round-off error does not add a tick.
+  [[nodiscard]] static Scalar ticks_for(Scalar acceleration, Scalar change) noexcept {
+    using std::ceil;
+    constexpr Scalar kRoundOff = Scalar(512) * std::numeric_limits<Scalar>::epsilon();
+    return ceil((Scalar(1) - kRoundOff) * (acceleration / change));
+  }
+
+  [[nodiscard]] bool stops_alone(Eigen::Index i) const noexcept { return (stops_alone_ >> i & 1U) != 0; }
+
+  /// Change of the velocity in the ramp, in which the acceleration a decreases to zero in r ticks, divided by h a: the
+  /// sum of 1 − (k + 1)/r over k < r, which is (r − 1)/2.
+  [[nodiscard]] Scalar ramp_velocity_change() const noexcept {
+    return std::max(ramp_ticks_ - Scalar(1), Scalar(0)) / Scalar(2);
+  }
+
+  /// Deficit of the displacement in the ramp, compared with r ticks at the constant velocity after the ramp, divided by
+  /// h² a: (r − 1)(2r − 1)/12, or (r − 1)(r − 2)/6 at velocity level.
+  [[nodiscard]] Scalar ramp_deficit() const noexcept {
+    const Scalar r = std::max(ramp_ticks_, Scalar(1));
+    return kLevel == Level::kVelocity ? std::max((r - Scalar(1)) * (r - Scalar(2)) / Scalar(6), Scalar(0))
+                                      : (r - Scalar(1)) * (Scalar(2) * r - Scalar(1)) / Scalar(12);
+  }
+
+  /// Whether joint i keeps its bounds in the synchronised stop. Sufficient condition: the joint keeps its bounds if it
+  /// coasts at its largest velocity until the full deceleration begins, and then brakes at the full deceleration. The
+  /// synchronised stop is neither faster nor longer.
+  [[nodiscard]] bool keeps_bounds(const JointLimits& limits, Eigen::Index i,
+                                  const State<N, Scalar>& start) const noexcept {
+    using std::abs;
+    const Scalar after_ramp = velocity_(i);
+    const Scalar v = start.qd(i) * after_ramp > after_ramp * after_ramp ? start.qd(i) : after_ramp;
+    if (!(abs(v) <= limits.bounds().velocity(i))) return false;
+    const Scalar h = limits.tick();
+    const Scalar coasting = h * (ramp_ticks_ + profile_.ramp - Scalar(1));
+    const Scalar deceleration = abs(after_ramp) / (h * (profile_.brake - profile_.ramp + Scalar(1)));
+    return limits.allows_stop(i, start.q(i) + coasting * v, v, deceleration);
+  }
+
+  /// Acceleration of the next tick in the shortest stop of joint i alone.
+  [[nodiscard]] static Scalar quickest(const JointLimits& limits, Eigen::Index i, const State<N, Scalar>& state,
+                                       const JointVector& before) noexcept {
+    const Scalar most = limits.bounds().acceleration(i);
+    if (!limits.bounds_jerk(i)) return std::clamp(-state.qd(i) / limits.tick(), -most, most);
+    const auto joint = limits.jerk_limited(i);
+    const bool within = limits.bounds().lower(i) <= state.q(i) && state.q(i) <= limits.bounds().upper(i);
+    if (!within) return joint.brake(state.qd(i), before(i));  // A joint beyond its range stops there.
+    const auto [low, high] = joint.viable(joint.after(before(i)), state.q(i), state.qd(i));
+    return std::clamp(joint.brake(state.qd(i), before(i)), low, high);
+  }
+
+  /// Bounds on the displacement in the shortest stop of joint i alone [rad] or [m].
+  [[nodiscard]] Interval<Scalar> single_stop_displacement(const JointLimits& limits, Eigen::Index i,
+                                                          Scalar qd) const noexcept {
+    using std::abs;
+    const Scalar h = limits.tick();
+    const Scalar most = limits.bounds().acceleration(i);
+    if (!limits.bounds_jerk(i)) {
+      const Scalar distance = abs(qd) * (abs(qd) / most + h) / Scalar(2);
+      return qd > Scalar(0) ? Interval<Scalar>{Scalar(0), distance} : Interval<Scalar>{-distance, Scalar(0)};
+    }
+    // Upper bound: the velocity never exceeds `top`. The joint moves at `top` until the acceleration is zero, and then
+    // makes the shortest stop from `top`.
+    const Scalar jerk = limits.bounds().jerk(i);
+    const Scalar ramp = abs(last_(i)) / jerk;
+    const Scalar top = abs(qd) + abs(last_(i)) * ramp / Scalar(2);
+    const Scalar distance = top * (ramp + Scalar(2) * h) + QuickestStop<Scalar>{most, jerk}.stopping_distance(top);
+    const bool forth = qd > Scalar(0) && velocity_(i) >= Scalar(0);
+    const bool back = qd < Scalar(0) && velocity_(i) <= Scalar(0);
+    return {forth ? Scalar(0) : -distance, back ? Scalar(0) : distance};
+  }
+
+  StopProfile<Scalar> profile_;    ///< For the synchronised stop.
+  JointVector last_;               ///< Acceleration of the tick before the plan.
+  Scalar ramp_ticks_ = Scalar(0);  ///< Length r of the ramp in ticks: 0 if no jerk is bounded.
+  JointVector velocity_;           ///< Velocity after the ramp.
+  JointBits stops_alone_ = 0;      ///< Bit i is set if joint i follows its own shortest stop.
+  Scalar k_ = Scalar(0);           ///< Number of completed ticks.
+};
+
+}  // namespace fpbm

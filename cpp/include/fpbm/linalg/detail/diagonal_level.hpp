@@ -1,0 +1,78 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "fpbm/core/types.hpp"
+#include "fpbm/linalg/detail/entrywise.hpp"
+#include "fpbm/linalg/detail/paired.hpp"
+
+namespace fpbm {
+
+/// Rows of a task level that is a posture of all joints: J = diag(entries), without zeros on the diagonal.
+template <int N, typename Scalar>
+struct DiagonalLevel {
+  Vector<N, Scalar> entries;  ///< Diagonal of J, n entries.
+
+  [[nodiscard]] Eigen::Index rows() const noexcept { return entries.size(); }
+  /// Smallest magnitude of an entry: a lower bound on the singular values of J Z for any Z with orthonormal columns.
+  [[nodiscard]] Scalar least() const noexcept {
+    return std::abs(*std::min_element(entries.data(), entries.data() + entries.size(),
+                                      [](Scalar a, Scalar b) { return std::abs(a) < std::abs(b); }));
+  }
+  [[nodiscard]] Matrix<N, N, Scalar> matrix() const noexcept {
+    auto J = filled<Matrix<N, N, Scalar>>(entries.size());
+    for (Eigen::Index i = 0; i < entries.size(); ++i) J.coeffRef(i, i) = entries.coeff(i);
+    return J;
+  }
+};
+
+/// J v.
+template <int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> product(const DiagonalLevel<N, Scalar>& J, const Vector<N, Scalar>& v) noexcept {
+  return entrywise(v, [&](Eigen::Index i) { return J.entries.coeff(i) * v.coeff(i); });
+}
+
+/// Whether A is square and diagonal, without zeros on the diagonal. The rows of A are then a posture of all joints,
+/// which determines all null-space motion of the higher levels and needs no factorisation of A.
+template <typename Matrix>
+[[nodiscard]] bool is_diagonal(const Matrix& A) noexcept {
+  if (A.rows() != A.cols()) return false;
+  for (Eigen::Index j = 0; j < A.cols(); ++j) {
+    for (Eigen::Index i = 0; i < A.rows(); ++i) {
+      if ((A.coeff(i, j) != 0) != (i == j)) return false;
+    }
+  }
+  return true;
+}
+
+/// y = Z (ZᵀD²Z)⁻¹ ZᵀD r, which minimises |D y − r| over the span of the columns of Z. Z has at most n columns, which
+/// are orthonormal.
+///
+/// The modified Gram-Schmidt method makes the columns of D Z orthogonal. The columns of Z are then conjugate: zᵢᵀD²zⱼ =
+/// 0.
+template <int N, typename Scalar, typename Basis>
+[[nodiscard]] Vector<N, Scalar> solve_diagonal(Basis Z, const Vector<N, Scalar>& D, Vector<N, Scalar> r) noexcept {
+  const Eigen::Index n = Z.rows();
+  Basis DZ = Z;
+  auto squares = filled<Vector<N, Scalar>>(n);
+  auto y = filled<Vector<N, Scalar>>(n);
+  for (Eigen::Index j = 0; j < Z.cols(); ++j) {
+    Scalar* const z = Z.data() + j * n;
+    Scalar* const column = DZ.data() + j * n;
+    for (Eigen::Index i = 0; i < n; ++i) column[i] *= D.coeff(i);
+    for (Eigen::Index k = 0; k < j; ++k) {
+      const Scalar* const other = DZ.data() + k * n;
+      const Scalar coefficient = paired_dot(other, column, n) / squares.coeff(k);
+      subtract_multiple(column, coefficient, other, n);
+      subtract_multiple(z, coefficient, Z.data() + k * n, n);
+    }
+    squares.coeffRef(j) = squared_length(column, n);
+    const Scalar coefficient = paired_dot<Scalar>(column, r.data(), n) / squares.coeff(j);
+    subtract_multiple<Scalar>(r.data(), coefficient, column, n);
+    subtract_multiple<Scalar>(y.data(), -coefficient, z, n);
+  }
+  return y;
+}
+
+}  // namespace fpbm

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <array>
+
+#include "fpbm/model/kinematics.hpp"
+#include "fpbm/realtime/detail/joint_approach.hpp"
+#include "fpbm/realtime/detail/require_stable.hpp"
+#include "fpbm/realtime/detail/tick_references.hpp"
+#include "fpbm/realtime/detail/turns.hpp"
+#include "fpbm/simulate/detail/closed_loop.hpp"
+#include "fpbm/singular/detail/damped_gram.hpp"
+
+namespace fpbm {
+
+/// Result of desire().
+template <typename Loop, typename Space, int N, typename Scalar>
+struct Desired {
+  Loop loop;                     ///< Kinematics in the middle of the tick, and the motion of the first level.
+  Reference<Space, Scalar> now;  ///< Reference at the start of the tick, not corrected.
+  Vector<N, Scalar> u;           ///< Desired motion: accelerations [rad/s²], or velocities [rad/s].
+};
+
+/// Begins the correction of the references with the errors at the start of a tick.
+template <typename Arm, typename TrackerState, typename Twist, typename Scalar>
+void begin_correction(const Arm& arm, TrackerState& state, const Twist& error, const Scalar& length) noexcept {
+  state.correction.begin(error, length);
+  approach_postures<TrackerState::kLevel, typename TrackerState::Space>(arm, state.limits(), state.correction,
+                                                                        [](int) { return Scalar(0); });
+}
+
+/// Motion of the scheme. σ is from the factorisation of the scheme, or from a factorisation of JJᵀ if the scheme does
+/// not report σ.
+template <typename Loop, typename Target, typename Result>
+void resolve(Loop& loop, const Target& reference, Result& result) noexcept {
+  auto dx = Loop::packed(loop.state);
+  result.sigma = -1;
+  result.status = loop.resolve(reference, dx, &result.sigma);
+  if (result.sigma < 0) result.sigma = least_singular_value_bound(first_rows(loop.kinematics));
+}
+
+/// First step of a tick: the motion of the scheme in the middle of the tick (TickState::update_middle()), with
+/// corrected references (Correction, HeldLevel, LowerLevels). Sets the error, σ and the status of the result. If the
+/// status is a failure, the desired motion is the present motion.
+template <typename Arm, typename Scheme, typename TrackerState, typename Space, typename Scalar>
+[[nodiscard]] auto desire(const Arm& arm, const Scheme& scheme, TrackerState& state,
+                          TickReferences<Space, Scalar> references, typename TrackerState::Result& result) noexcept {
+  using Loop = ClosedLoop<Arm, Scheme, Space>;
+  using JointVector = typename TrackerState::JointVector;
+  const auto& joints = state.tick.joints;
+  Desired<Loop, Space, Arm::kDof, Scalar> desired{
+      {arm, scheme, {}, joints, filled<JointVector>(joints.q.size())}, {}, state.tick.motion_to(joints)};
+  auto& kinematics = desired.loop.kinematics;
+  points_of(arm, joints.q, kinematics, 0);
+  remove_turns(arm, kinematics.tip, state.continuous, references.stages);
+  if (state.keeps_stopping()) state.held_level.hold(references, kinematics.tip, kinematics.length);
+  result.error = task_error(kinematics, references.stages[0].x);
+  begin_correction(arm, state, result.error, kinematics.length);
+  if (state.lower_levels.hold(references, kinematics, result.error, state.correction)) {
+    begin_correction(arm, state, task_error(kinematics, references.stages[0].x), kinematics.length);
+  }
+  desired.now = references.stages[0];
+  if (state.correction.active()) {
+    for (auto& stage : references.stages) stage = state.correction(stage);
+  }
+  resolve(desired.loop, state.tick.update_middle(desired.loop, references, gains_of<Scalar>(scheme)), result);
+  if (failed(result.status)) return desired;
+  desired.u = state.lower_levels.rests() ? state.tick.slowed() : desired.loop.motion();
+  return desired;
+}
+
+/// desire() for a measured state: the accelerations of the scheme in this state.
+template <typename Arm, typename Scheme, typename TrackerState, typename Target>
+[[nodiscard]] auto desire_measured(const Arm& arm, const Scheme& scheme, TrackerState& state,
+                                   const typename TrackerState::JointState& measured, const Target& reference,
+                                   typename TrackerState::Result& result) noexcept {
+  using Scalar = typename TrackerState::Scalar;
+  using JointVector = typename TrackerState::JointVector;
+  using Loop = ClosedLoop<Arm, Scheme, typename TrackerState::Space>;
+  Desired<Loop, typename TrackerState::Space, Arm::kDof, Scalar> desired{
+      {arm, scheme, {}, measured, filled<JointVector>(measured.q.size())}, reference, measured.qd};
+  auto& loop = desired.loop;
+  loop.update(Loop::packed(measured));
+  std::array<Target, 1> now{reference};
+  remove_turns(arm, loop.kinematics.tip, state.continuous, now);
+  result.error = task_error(loop.kinematics, now[0].x);
+  begin_correction(arm, state, result.error, loop.kinematics.length);
+  resolve(loop, state.correction(now[0]), result);
+  desired.u = loop.qdd;
+  return desired;
+}
+
+}  // namespace fpbm
