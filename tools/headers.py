@@ -1,5 +1,7 @@
-"""Writes fpbm.hpp, which includes every public header, or checks the file (--check)."""
+"""Writes fpbm.hpp, which includes every public header. --check: checks fpbm.hpp, the number of public headers, and the
+directions of includes between the rooms of the library (docs/architecture.md)."""
 
+import re
 import sys
 from pathlib import Path
 
@@ -7,6 +9,44 @@ INCLUDE = Path(__file__).parent.parent / "cpp" / "include"
 UMBRELLA = INCLUDE / "fpbm" / "fpbm.hpp"
 # lanes.hpp needs <experimental/simd>, which not every standard library has.
 LEFT_OUT = {"fpbm/fpbm.hpp", "fpbm/core/lanes.hpp"}
+MOST_PUBLIC = 70
+# A header includes headers of its own layer and of the layers before.
+LAYERS = [
+    ("core", "geometry", "linalg"),
+    ("model",),
+    ("path",),
+    ("target",),
+    ("task",),
+    ("singular",),
+    ("objective",),
+    ("scheme",),
+    ("limits",),
+    ("bound",),
+    ("simulate",),
+    ("realtime",),
+    ("any",),
+]
+LEVEL = {room: level for level, rooms in enumerate(LAYERS) for room in rooms}
+
+
+def wrong_includes(header: Path) -> list[str]:
+    """The includes of a header that are against the directions."""
+    rooms = header.relative_to(INCLUDE / "fpbm").parts[:-1]
+    if not rooms:
+        return []
+    included = re.findall(r'#include "fpbm/(\w+)/', header.read_text())
+    return [room for room in included if LEVEL[room] > LEVEL[rooms[0]]]
+
+
+def complaints(public: set[str], fresh: str) -> list[str]:
+    found = []
+    if UMBRELLA.read_text() != fresh:
+        found.append(f"{UMBRELLA} does not include every public header: run make format")
+    if len(public) > MOST_PUBLIC:
+        found.append(f"{len(public)} headers are public: at most {MOST_PUBLIC} may be, move others to detail/")
+    for header in sorted((INCLUDE / "fpbm").rglob("*.hpp")):
+        found += [f"{header}: includes a header of {room}/, a later layer" for room in wrong_includes(header)]
+    return found
 
 
 def main() -> int:
@@ -15,10 +55,10 @@ def main() -> int:
     fresh = head + "".join(f'#include "{header}"\n' for header in sorted(headers - LEFT_OUT))
     if "--check" not in sys.argv:
         UMBRELLA.write_text(fresh)
-    elif UMBRELLA.read_text() != fresh:
-        print(f"{UMBRELLA} does not include every public header: run make format", file=sys.stderr)
-        return 1
-    return 0
+        return 0
+    found = complaints(headers, fresh)
+    print("\n".join(found), end="\n" if found else "", file=sys.stderr)
+    return 1 if found else 0
 
 
 if __name__ == "__main__":

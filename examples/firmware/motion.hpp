@@ -1,12 +1,12 @@
 #pragma once
 
 #include <fpbm/model/serial_arm.hpp>
-#include <fpbm/path/path_follower.hpp>
-#include <fpbm/realtime/tracker.hpp>
-#include <fpbm/scheme/schemes.hpp>
 #include <fpbm/path/in_plane.hpp>
+#include <fpbm/path/path_follower.hpp>
 #include <fpbm/path/shapes.hpp>
 #include <fpbm/path/with_rotation.hpp>
+#include <fpbm/realtime/tracker.hpp>
+#include <fpbm/scheme/schemes.hpp>
 
 #include "panda.hpp"
 #include "ur5e.hpp"

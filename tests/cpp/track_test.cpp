@@ -59,7 +59,8 @@ TEST(Track, is_tick_after_tick) {
   }
 }
 
-/// Far from every limit, the motion equals the rollout up to the error of a tick, which is not a step of RK4. Within narrow limits, the limits hold.
+/// Far from every limit, the motion equals the rollout up to the error of a tick, which is not a step of RK4. Within
+/// narrow limits, the limits hold.
 TEST(Track, keeps_the_limits_and_is_a_rollout_far_from_them) {
   const auto record = [](double velocity) {
     auto tracker = make_tracker(velocity);

@@ -19,7 +19,7 @@ def test_python() -> None:
     assert sorted(listed) == sorted(fp.__all__)
 
 
-def test_every_header_folder_has_a_page() -> None:
+def test_every_folder_of_public_headers_has_a_page() -> None:
     folders = {header.parent.name for header in INCLUDE.glob("*/*.hpp")}
     assert {page.stem for page in (DOCS / "reference" / "cpp").glob("*.rst")} == folders
 

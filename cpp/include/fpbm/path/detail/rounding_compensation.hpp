@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "fpbm/core/types.hpp"
-#include "fpbm/task/detail/point.hpp"
+#include "fpbm/path/detail/point.hpp"
 
 namespace fpbm {
 
