@@ -499,7 +499,7 @@ TEST(TargetFilter, is_followed_by_a_tracker) {
   filter.push(target);
   double worst = 0.0;
   for (int k = 0; k < 3000; ++k) worst = std::max(worst, tracker.tick(filter).error.norm());
-  EXPECT_LE(worst, 1e-9);
+  EXPECT_LE(worst, 1e-7);  // The jerk of the filter jumps.
   EXPECT_LE((tracker.tip() - target).norm(), 1e-9);
   tracker.stop();
   filter.push(start);

@@ -180,7 +180,7 @@ TEST(Tracker, pauses_and_resumes_on_its_path) {
       const auto tick = checked_tick(tracker, follower);
       ASSERT_EQ(tick.status, Status::kOk);
       // The path now ends within a tick, and its acceleration jumps there.
-      ASSERT_LE(tick.error.norm(), follower.time() < 4.0 ? 2e-9 : 1e-5);
+      ASSERT_LE(tick.error.norm(), follower.time() < 4.0 ? 5e-9 : 1e-5);
     }
   };
   go(1500);
@@ -198,7 +198,7 @@ TEST(Tracker, pauses_and_resumes_on_its_path) {
   follower.resume();
   go(8000);
   EXPECT_TRUE(follower.done());
-  EXPECT_LE(Pose::difference<double>(follower.ahead(0.0).x, tracker.tip()).norm(), 2e-9);
+  EXPECT_LE(Pose::difference<double>(follower.ahead(0.0).x, tracker.tip()).norm(), 5e-9);
 }
 
 /// In every phase, the reference velocity is the derivative of the position, and the reference acceleration is the

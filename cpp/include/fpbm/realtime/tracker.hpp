@@ -138,6 +138,7 @@ class Tracker {
       points_of(arm_, state().q, desired.loop.kinematics, 0);
       (void)state_.tick.update_middle(desired.loop, references, gains_of<Scalar>(scheme_));
     }
+    state_.tick.reference_change = references.change();
     finish_tick(desired, rows, result);
     return result.status;
   }

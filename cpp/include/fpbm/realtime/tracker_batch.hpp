@@ -95,7 +95,9 @@ class TrackerBatch {
   /// u to this motion. Returns the lanes in which the motion is finite.
   [[nodiscard]] Mask<In> desired_motion(Loop& loop, const TickReferences<Space, In>& references,
                                         Vector<N, In>& u) noexcept {
-    TickState<Scheme::kLevel, Space, N, In> state{{In(references.dt)}, loop.state, loop.state.qd, loop.state.qd};
+    TickState<Scheme::kLevel, Space, N, In> state{
+        {In(references.dt)}, loop.state, loop.state.qd, loop.state.qd, reference_change_};
+    reference_change_ = references.change();
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       set_lane(state.last, lane, Vector<N, Scalar>(trackers_[lane].acceleration()));
       set_lane(state.change, lane, Vector<N, Scalar>(trackers_[lane].acceleration_change()));
@@ -129,6 +131,7 @@ class TrackerBatch {
   Scheme scheme_;
   std::vector<Tracker> trackers_;
   typename Space::template Point<In> start_;
+  Vector<Space::kRows, In> reference_change_ = filled<Vector<Space::kRows, In>>(Space::kRows);
   std::array<Status, kLanes> status_;
 };
 

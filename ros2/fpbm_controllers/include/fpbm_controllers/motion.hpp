@@ -1,14 +1,12 @@
 #pragma once
 
 #include <cstddef>
-#include <fpbm/any/detail/any_frame_task.hpp>
+#include <fpbm/any/any_stack.hpp>
 #include <fpbm/limits/limits.hpp>
 #include <fpbm/model/tree.hpp>
 #include <fpbm/objective/null_space.hpp>
 #include <fpbm/realtime/tick.hpp>
-#include <fpbm/target/detail/target_bounds.hpp>
-#include <fpbm/task/detail/link_frame.hpp>
-#include <fpbm/task/detail/task_gains.hpp>
+#include <fpbm/target/target_filter.hpp>
 #include <fpbm_controllers/report.hpp>
 #include <fpbm_controllers/target.hpp>
 #include <memory>

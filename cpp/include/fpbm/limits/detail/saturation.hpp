@@ -1,9 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <bitset>
-#include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -97,42 +94,50 @@ class NullSpaceSaturation {
         lower(joints + k) = -std::numeric_limits<Scalar>::infinity();
       }
     }
-    SaturatedMotion<N, Scalar> result{rest, Scalar(0), 0, 0};
-    hit_.reset();
-    const Scalar given = largest_magnitude(goal);
-    held_.begin(std::min(Held::kSteepest, compensation_ * given));
     All u(n);
     for (Eigen::Index i = 0; i < n; ++i) u.coeffRef(i) = Scalar(0);
-    const auto round_off = [&](Scalar fastest) noexcept {
-      Scalar size(0);
-      for (Eigen::Index i = 0; i < joints; ++i) {
-        size = std::max(size, (abs(desired.coeff(i)) + abs(rest.coeff(i))) / unit_.coeff(i));
+    SaturatedMotion<N, Scalar> result{rest, Scalar(0), 0, 0};
+    held_.begin(std::min(Held::kSteepest, compensation_ * largest_magnitude(goal)));
+    const Eigen::Index most = kPasses * n;
+    while (result.passes < most) {
+      ++result.passes;
+      const All rate = held_.direction(Z_, goal);
+      const Scalar fastest = largest_magnitude(rate);
+      if (fastest > held_.steepest()) break;
+      const Scalar still = kStill * fastest;
+      Scalar step = Scalar(1) - result.scale;
+      Eigen::Index hit = -1;
+      for (Eigen::Index i = 0; i < n; ++i) {
+        if (!(abs(rate(i)) > still) || held_.has(i)) continue;
+        const Scalar distance = ((rate(i) > Scalar(0) ? upper(i) : lower(i)) - u(i)) / rate(i);
+        if (distance < step) {
+          step = distance > Scalar(0) ? distance : Scalar(0);
+          hit = i;
+        }
       }
-      return Held::kRoundOff * (fastest + given) + kStill * size;
-    };
-    const All preferred = null_space_part(goal, joints);
-    for (Eigen::Index i = 0; i < n; ++i) goal.coeffRef(i) -= preferred.coeff(i);
-    result.scale = move(u, goal, lower, upper, round_off, result);
-    const All compensation = null_space_part(u, joints);
-    for (Eigen::Index i = 0; i < n; ++i) goal.coeffRef(i) = preferred.coeff(i) - compensation.coeff(i);
-    if (largest_magnitude(goal) > Held::kRoundOff * given) {
-      held_.begin(Held::kSteepest);
-      (void)move(u, goal, lower, upper, round_off, result);
-    }
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const bool above = u.coeff(i) == upper.coeff(i);
-      if (!hit_[static_cast<std::size_t>(i)] || (!above && u.coeff(i) != lower.coeff(i))) continue;
-      if (i >= joints) {
-        result.rows |= std::uint32_t(1) << (i - joints);
-        continue;
+      for (Eigen::Index i = 0; i < n; ++i) u.coeffRef(i) += step * rate.coeff(i);
+      result.scale = hit < 0 ? Scalar(1) : result.scale + step;
+      if (hit < 0) break;
+      const bool above = rate(hit) > Scalar(0);
+      u(hit) = above ? upper(hit) : lower(hit);
+      const auto round_off = [&]() noexcept {
+        Scalar given(0);
+        for (Eigen::Index i = 0; i < joints; ++i) {
+          given = std::max(given, (abs(desired.coeff(i)) + abs(rest.coeff(i))) / unit_.coeff(i));
+        }
+        return Held::kRoundOff * (fastest + largest_magnitude(goal)) + kStill * given;
+      };
+      if (!held_.hold(Z_, hit, above, abs(rate(hit)), Scalar(1) - result.scale, round_off)) {
+        count(result, hit, joints);
+        break;
       }
-      result.joints |= joint_bit(i);
     }
     result.u =
         box.nearest(entrywise(rest, [&](Eigen::Index i) { return rest.coeff(i) + unit_.coeff(i) * u.coeff(i); }));
-    for (Eigen::Index i = 0; i < joints; ++i) {
-      if ((result.joints >> i & 1U) == 0) continue;
-      result.u.coeffRef(i) = u.coeff(i) == upper.coeff(i) ? box.upper.coeff(i) : box.lower.coeff(i);
+    for (int i = 0; i < held_.count(); ++i) {
+      const auto [joint, above] = held_[i];
+      count(result, joint, joints);
+      if (joint < joints) result.u(joint) = above ? box.upper(joint) : box.lower(joint);
     }
     return result;
   }
@@ -199,52 +204,9 @@ class NullSpaceSaturation {
     }
   }
 
-  /// Z Zᵀv, over the joints.
-  [[nodiscard]] All null_space_part(const All& v, Eigen::Index joints) const noexcept {
-    All part(v.size());
-    for (Eigen::Index i = 0; i < v.size(); ++i) part.coeffRef(i) = Scalar(0);
-    for (Eigen::Index j = 0; j < Z_.cols(); ++j) {
-      Scalar along(0);
-      for (Eigen::Index i = 0; i < joints; ++i) along += Z_.coeff(i, j) * v.coeff(i);
-      for (Eigen::Index i = 0; i < v.size(); ++i) part.coeffRef(i) += along * Z_.coeff(i, j);
-    }
-    return part;
-  }
-
-  /// Moves u along the goal and null-space motion, until the fraction of the goal is 1 or the bounds admit no more.
-  /// Returns this fraction.
-  template <typename RoundOff>
-  [[nodiscard]] Scalar move(All& u, const All& goal, const All& lower, const All& upper, const RoundOff& round_off,
-                            SaturatedMotion<N, Scalar>& result) noexcept {
-    using std::abs;
-    const Eigen::Index n = u.size();
-    Scalar scale(0);
-    for (Eigen::Index pass = 0; pass < kPasses * n; ++pass) {
-      ++result.passes;
-      const All rate = held_.direction(Z_, goal);
-      const Scalar fastest = largest_magnitude(rate);
-      if (fastest > held_.steepest()) break;
-      const Scalar still = kStill * fastest;
-      Scalar step = Scalar(1) - scale;
-      Eigen::Index hit = -1;
-      for (Eigen::Index i = 0; i < n; ++i) {
-        if (!(abs(rate(i)) > still) || held_.has(i)) continue;
-        const Scalar distance = ((rate(i) > Scalar(0) ? upper(i) : lower(i)) - u(i)) / rate(i);
-        if (distance < step) {
-          step = distance > Scalar(0) ? distance : Scalar(0);
-          hit = i;
-        }
-      }
-      for (Eigen::Index i = 0; i < n; ++i) u.coeffRef(i) += step * rate.coeff(i);
-      if (hit < 0) return Scalar(1);
-      scale += step;
-      const bool above = rate(hit) > Scalar(0);
-      u(hit) = above ? upper(hit) : lower(hit);
-      hit_[static_cast<std::size_t>(hit)] = true;
-      if (!held_.hold(Z_, hit, above, abs(rate(hit)), Scalar(1) - scale, [&]() noexcept { return round_off(fastest); }))
-        break;
-    }
-    return scale;
+  static void count(SaturatedMotion<N, Scalar>& result, Eigen::Index held, Eigen::Index joints) noexcept {
+    if (held < joints) result.joints |= joint_bit(held);
+    if (held >= joints) result.rows |= std::uint32_t(1) << (held - joints);
   }
 
   Basis Z_;  ///< Basis of the null space in the units of the joints.
@@ -252,7 +214,6 @@ class NullSpaceSaturation {
   Scalar compensation_ = std::numeric_limits<Scalar>::infinity();
   Rows<N, P, Scalar> rows_;  ///< Scaled to length 1.
   Held held_;
-  std::bitset<kMost + P> hit_;  ///< Whether a joint or row has met a bound.
 };
 
 }  // namespace fpbm

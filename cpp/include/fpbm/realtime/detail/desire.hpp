@@ -63,6 +63,7 @@ template <typename Arm, typename Scheme, typename TrackerState, typename Space, 
     for (auto& stage : references.stages) stage = state.correction(stage);
   }
   resolve(desired.loop, state.tick.update_middle(desired.loop, references, gains_of<Scalar>(scheme)), result);
+  state.tick.reference_change = references.change();
   if (failed(result.status)) return desired;
   desired.u = state.lower_levels.rests() ? state.tick.slowed() : desired.loop.motion();
   return desired;

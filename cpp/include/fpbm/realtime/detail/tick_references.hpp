@@ -25,10 +25,11 @@ struct TickReferences {
   }
 
   /// Reference of a tick (docs/tick.md, A tick): the reference in the middle. At velocity level, with the mean
-  /// velocity of the tick, (xd₀ + 4xd + xd₁)/6. At acceleration level, with the acceleration
-  /// xdd − h²x⁗/24 = xdd − (xdd₀ − 2xdd + xdd₁)/6. With these, positions follow x at the ends of ticks.
+  /// velocity of the tick, (xd₀ + 4xd + xd₁)/6. At acceleration level, with the mean acceleration of the tick, minus
+  /// h/12 of the change of the jerk since the last tick: (xdd₀ + 4xdd + xdd₁)/6 − (change() − before)/12. With these,
+  /// positions follow x at the ends of ticks. before: change() of the last tick.
   template <Level kLevel>
-  [[nodiscard]] Reference<Space, Scalar> middle() const noexcept {
+  [[nodiscard]] Reference<Space, Scalar> middle(const Vector<Space::kRows, Scalar>& before) const noexcept {
     Reference<Space, Scalar> reference = stages[1];
     if constexpr (kLevel == Level::kVelocity) {
       for (Eigen::Index i = 0; i < reference.xd.size(); ++i) {
@@ -40,9 +41,15 @@ struct TickReferences {
     for (Eigen::Index i = 0; i < reference.xdd.size(); ++i) {
       const Scalar xdd = stages[1].xdd.coeff(i);
       const Scalar second_difference = stages[0].xdd.coeff(i) - xdd - xdd + stages[2].xdd.coeff(i);
-      reference.xdd.coeffRef(i) -= second_difference / Scalar(6);
+      const Scalar change = stages[2].xdd.coeff(i) - stages[0].xdd.coeff(i);
+      reference.xdd.coeffRef(i) += second_difference / Scalar(6) - (change - before.coeff(i)) / Scalar(12);
     }
     return reference;
+  }
+
+  /// Change of the acceleration during the tick.
+  [[nodiscard]] Vector<Space::kRows, Scalar> change() const noexcept {
+    return entrywise(stages[0].xdd, [&](Eigen::Index i) { return stages[2].xdd.coeff(i) - stages[0].xdd.coeff(i); });
   }
 
   /// Converts displacements from the point `start` to references in the base frame. Other: scalar type of the result,

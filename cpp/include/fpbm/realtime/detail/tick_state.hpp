@@ -22,6 +22,8 @@ struct TickState {
   JointState joints;
   JointVector last;    ///< Acceleration of the last tick.
   JointVector change;  ///< Change of acceleration from the tick before the last tick to the last tick.
+  /// Change of the reference's acceleration during the last tick.
+  Vector<Space::kRows, Scalar> reference_change = filled<Vector<Space::kRows, Scalar>>(Space::kRows);
 
   /// State after a tick with the constant motion u.
   [[nodiscard]] JointState after(const JointVector& u) const noexcept { return motion.after(joints, u); }
@@ -56,7 +58,7 @@ struct TickState {
     loop.state = kLevel == Level::kAcceleration ? motion.middle(joints, last) : motion.middle(joints);
     loop.arm.kinematics(loop.state.q, loop.state.qd, loop.kinematics);
     const auto moved = Space::template difference<Scalar>(loop.kinematics.tip, start);
-    auto middle = references.template middle<kLevel>();
+    auto middle = references.template middle<kLevel>(reference_change);
     if constexpr (kLevel == Level::kAcceleration) {
       const auto expected = Space::template difference<Scalar>(references.stages[1].x, references.stages[0].x);
       continue_tick(loop.kinematics, middle, gains, motion.dt,

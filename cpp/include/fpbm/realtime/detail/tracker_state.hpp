@@ -13,7 +13,7 @@
 
 namespace fpbm {
 
-/// What a Tracker stores from tick to tick. A tick has four steps, which read and change this state: desire(), limit(),
+/// State of a Tracker from tick to tick. A tick has four steps, which read and change this state: desire(), limit(),
 /// prove() and account() (docs/architecture.md, A tick).
 template <Level kLevel_, typename Space_, int N, typename Scalar_, typename Guard_>
 struct TrackerState {
