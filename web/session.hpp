@@ -1,7 +1,7 @@
 #pragma once
 
 #include <algorithm>
-#include <fpbm/bound/detail/link_capsule.hpp>
+#include <fpbm/bound/clearance.hpp>
 #include <fpbm/model/robot.hpp>
 #include <fpbm/objective/null_space.hpp>
 #include <fpbm/path/path_follower.hpp>
