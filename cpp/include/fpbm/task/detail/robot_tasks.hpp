@@ -60,6 +60,7 @@ class RobotTasks {
  private:
   void begin(State& out) const noexcept {
     out.length = robot_.length();
+    out.tick = Scalar(0);  // Until continue_tick().
     out.enabled = stack_.enabled();
     int k = 0;
     std::apply([&](auto&... level) { (level.resize(stack_.rows(k++), robot_.dof()), ...); }, out.levels);
