@@ -96,6 +96,7 @@ struct SelectionGrowth<StackSpace<Levels...>, N, Scalar> {
       // The selection of a posture is constant.
       if constexpr (static_cast<int>(kTask) < Space::kFirst && !std::tuple_element_t<kTask, Tasks>::kWhole) {
         const auto& task = std::get<kTask>(kinematics.tasks);
+        if (task.S.rows() == 0) return;  // An empty place of a stack has no velocity.
         const Scalar size = size_of(task, row, std::integral_constant<int, decltype(space)::kRows>{});
         auto& last = std::get<kTask>(last_).S;
         if (started_) sum += (task.S - last).norm() * (size + sizes_[kTask]);
