@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <vector>
 
 #include "fpbm/any/detail/any_weights.hpp"
 #include "fpbm/realtime/stack_tracker.hpp"
+#include "fpbm/sim/first_level.hpp"
 #include "fpbm/task/axis_task.hpp"
 #include "fpbm/task/center_of_mass_task.hpp"
 #include "fpbm/task/pose_task.hpp"
@@ -160,6 +162,26 @@ TEST(AnyStack, has_poses_of_fewer_rows) {
   EXPECT_LT((reached.p - tip.p).norm(), 1e-6);
   EXPECT_LT((reached.R.col(2) - tip.R.col(2)).norm(), 1e-6);
   EXPECT_GT((reached.R.col(0) - tip.R.col(0)).norm(), 0.2);
+}
+
+/// A task without rows leaves its velocity unset, which must not end a rollout by chance.
+TEST(AnyStack, empty_places_do_not_change_the_watch_of_a_rollout) {
+  using Space = AnyStack::Space;
+  const AnyStack stack(level(frame_task(FrameCoordinates::kPosition, kTip, kHeight, true)), no_level(), no_level(),
+                       no_level());
+  const RobotTasks<Robot<kDynamic>, AnyStack> tasks(Robot<kDynamic>(presets::panda()), stack);
+  Kinematics<Space, kDynamic> kinematics;
+  std::get<1>(kinematics.tasks).xd.setConstant(std::numeric_limits<double>::quiet_NaN());
+  SelectionGrowth<Space, kDynamic, double> selection;
+  const Vector<Space::kRows> xd = Vector<Space::kRows>::Constant(0.1);
+  Vector<kDynamic> q(start());
+  double growth = 0.0;
+  for (int i = 0; i < 2; ++i) {
+    tasks.kinematics(q, Vector<kDynamic>(Vector<7>::Ones()), kinematics);
+    growth = selection.of_rate(kinematics, xd);
+    q.array() += 0.1;
+  }
+  EXPECT_GT(growth, 0.0);  // Not NaN: the axes of the frame have turned.
 }
 
 TEST(AnyStack, rejects_invalid_tasks) {
