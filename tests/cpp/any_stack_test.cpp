@@ -7,7 +7,7 @@
 
 #include "fpbm/any/detail/any_weights.hpp"
 #include "fpbm/realtime/stack_tracker.hpp"
-#include "fpbm/sim/first_level.hpp"
+#include "fpbm/simulate/detail/first_level.hpp"
 #include "fpbm/task/axis_task.hpp"
 #include "fpbm/task/center_of_mass_task.hpp"
 #include "fpbm/task/pose_task.hpp"

@@ -255,30 +255,39 @@ TEST(Direction, difference_is_the_rotation_vector_of_small_angles) {
   }
 }
 
-TEST(Stack, of_one_level_is_the_tracker_of_that_task) {
+/// Ticks of a stack of one pose task and of that task alone are equal. first: scheme of the stack, whose gains are in
+/// gains.
+template <typename First, typename Scheme>
+void expect_ticks_of_the_task(const First& first, const TaskGains<>& gains, const Scheme& scheme) {
   const Vector<7> q0{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785};
-  const Stack stack(PoseTask<>{{kTip}, {10.0, 25.0}});
-  auto tracker = stack_tracker(panda(), stack, balanced(), q0);
-  const auto scheme =
-      FPBM<7>(0.6, DiagonalWeights<7>(Vector<7>(Vector<7>::Ones())), 10.0, 25.0, NullSpace<7>().with_damping(2.0));
+  const Stack stack(PoseTask<>{{kTip}, gains});
+  auto tracker = stack_tracker(panda(), stack, first, q0);
   Tracker expected(SerialArm<7>(presets::panda()), Pose{}, scheme, q0);
   const WithRotation path(InPlane(Path(Circle(0.3), 1.5), Vector<3>::UnitY(), Vector<3>::UnitZ()));
   PathFollower follower(path, expected.tip());
   int limited = 0;
   for (int i = 0; i < 2000; ++i) {
     const Reference<Pose> reference = follower.ahead(0.0);
-    auto joined = Reference<decltype(stack)::Space>::hold({reference.x});
+    auto joined = Reference<typename decltype(stack)::Space>::hold({reference.x});
     joined.xd = reference.xd;
     joined.xdd = reference.xdd;
     const auto one = expected.tick(reference);
     const auto same = tracker.tick(joined);
     follower.advance(kTick);
     limited += one.scale < 1.0 ? 1 : 0;
-    ASSERT_LT((one.q - same.q).norm(), 1e-9);  // Limited motions amplify round-off errors.
-    ASSERT_NEAR(one.scale, same.scale, 1e-5);
+    ASSERT_LT((one.q - same.q).norm(), 1e-11) << i;  // Limited motions amplify round-off errors.
+    ASSERT_NEAR(one.scale, same.scale, 1e-8) << i;
     ASSERT_EQ(one.status, same.status);
   }
   EXPECT_GT(limited, 100);
+}
+
+TEST(Stack, of_one_level_is_the_tracker_of_that_task) {
+  const DiagonalWeights<7> weights(Vector<7>(Vector<7>::Ones()));
+  const auto null_space = NullSpace<7>().with_damping(2.0);
+  expect_ticks_of_the_task(Balanced<7>(0.6, weights, null_space), TaskGains<>(10.0, 25.0),
+                           FPBM<7>(0.6, weights, 10.0, 25.0, null_space));
+  expect_ticks_of_the_task(WMVN<7>(weights), TaskGains<>(5.0), WMVN<7>(weights, 5.0));
 }
 
 /// Random levels of 1, 2 and 3 rows.

@@ -181,4 +181,4 @@ def test_a_tracker_continues_from_the_state_of_another():
     second = fp.Tracker(arm, scheme, first.q, qd0=first.qd, qdd0=first.qdd)
     for _ in range(100):
         # A tracker also stores the change of the acceleration in the last tick, which is 0 at a start.
-        np.testing.assert_allclose(first.tick(target).q, second.tick(target).q, rtol=0, atol=1e-9)
+        np.testing.assert_allclose(first.tick(target).q, second.tick(target).q, rtol=0, atol=1e-7)

@@ -73,12 +73,12 @@ def test_one_level_moves_as_the_tracker_of_that_task(name, task):
         point += 0.2
         for _ in range(2000):
             tick, other = expected.tick(goal), tracker.tick({task: goal})
-            assert np.abs(tick.q - other.q).max() < 1e-6  # Limited motions amplify round-off errors.
+            assert np.abs(tick.q - other.q).max() < 1e-8
             assert tick.status == other.status
         assert tick.scales is None
         assert tick.errors is None
         assert other.scales.shape == (1,)
-        assert np.abs(other.errors[task] - tick.error).max() < 1e-6
+        assert np.abs(other.errors[task] - tick.error).max() < 1e-9
 
 
 def test_a_cup_stays_upright(panda, balanced):

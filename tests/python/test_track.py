@@ -38,7 +38,8 @@ FREE = {
 
 
 @pytest.mark.parametrize("case", FREE)
-def test_without_limits_track_equals_simulate(case):
+def test_without_limits_track_follows_simulate(case):
+    """Up to the error of a tick, which is not a step of RK4: terms of dt squared, and of dt in the null space."""
     arm, path, scheme, task = FREE[case]
     start = BENT if arm is PANDA else [0.3, 0.9, 0.9, 0.5]
     none = np.full(arm.dof, np.inf)
@@ -50,13 +51,13 @@ def test_without_limits_track_equals_simulate(case):
         assert getattr(here, name).shape == getattr(there, name).shape
     np.testing.assert_array_equal(here.t, there.t)
     # At velocity level, the velocity of a state is the velocity of the previous tick.
-    tolerance = 1e-9 if scheme.level == "acceleration" else 1e-3 * np.abs(there.qdd).max()
-    np.testing.assert_allclose(here.q, there.q, atol=1e-9)
-    np.testing.assert_allclose(here.qd, there.qd, atol=tolerance)
+    tolerance = 1e-3 if scheme.level == "acceleration" else 1e-3 * np.abs(there.qdd).max()
+    np.testing.assert_allclose(here.q, there.q, rtol=0, atol=5e-4)
+    np.testing.assert_allclose(here.qd, there.qd, rtol=0, atol=tolerance)
     np.testing.assert_allclose(here.x_ref, there.x_ref, atol=1e-12)
-    np.testing.assert_allclose(here.x, there.x, atol=1e-9)
-    assert here.max_error() < 1e-9
-    assert here.max_orientation_error() < 1e-9
+    np.testing.assert_allclose(here.x, there.x, rtol=0, atol=2e-7)
+    assert here.max_error() < 2e-7
+    assert here.max_orientation_error() < 2e-7
     assert (here.scale == 1).all()
     assert not here.saturated.any()
 
