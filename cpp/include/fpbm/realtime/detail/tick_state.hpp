@@ -9,6 +9,7 @@
 #include "fpbm/linalg/detail/sums.hpp"
 #include "fpbm/realtime/detail/continue_tick.hpp"
 #include "fpbm/realtime/detail/tick_motion.hpp"
+#include "fpbm/realtime/detail/tick_references.hpp"
 
 namespace fpbm {
 
