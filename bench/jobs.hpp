@@ -229,7 +229,7 @@ inline int near_pairs() {
 }
 
 /// A tick of a motion that swings by 10 cm, with and without a clearance.
-template <typename Guard>
+template <typename Bounds>
 class SwingingTick {
  public:
   void operator()() noexcept {
@@ -248,11 +248,11 @@ class SwingingTick {
     const fpbm::SerialArm<7> arm(Panda::chain());
     const fpbm::State<7> start{Panda::bent(), fpbm::Vector<7>::Zero()};
     const fpbm::Limits<fpbm::Level::kAcceleration, 7> limits(arm.limits(), 1e-3);
-    using Loop = fpbm::Tracker<fpbm::SerialArm<7>, fpbm::Pose, decltype(damped()), Guard>;
-    if constexpr (std::is_same_v<Guard, fpbm::Unguarded>) {
+    using Loop = fpbm::Tracker<fpbm::SerialArm<7>, fpbm::Pose, decltype(damped()), Bounds>;
+    if constexpr (std::is_same_v<Bounds, fpbm::Bounds<>>) {
       return Loop(arm, fpbm::Pose{}, damped(), start, {}, limits);
     } else {
-      return Loop(arm, fpbm::Pose{}, damped(), start, {}, limits, fpbm::Vector<7>::Zero(), Guard(surroundings()));
+      return Loop(arm, fpbm::Pose{}, damped(), start, {}, limits, fpbm::Vector<7>::Zero(), Bounds(surroundings()));
     }
   }
 
@@ -260,8 +260,8 @@ class SwingingTick {
   fpbm::Transform<> home_ = loop_.tip();
   int turn_ = 0;
 };
-using FreeTick = SwingingTick<fpbm::Unguarded>;
-using ClearTick = SwingingTick<fpbm::Guard<fpbm::Level::kAcceleration, 7>>;
+using FreeTick = SwingingTick<fpbm::Bounds<>>;
+using ClearTick = SwingingTick<fpbm::Bounds<fpbm::Clearance<7>>>;
 
 /// The result for a measured state, without bounds on jerk, because consecutive states are unrelated.
 class Measured {

@@ -149,12 +149,11 @@ struct WorstClearPanda {
     return q;
   }
   static auto tracker(const fpbm::Vector<7>& q) {
-    using Guard = fpbm::Guard<fpbm::Level::kAcceleration, 7>;
+    using Kept = fpbm::Bounds<fpbm::Clearance<7>>;
     const fpbm::SerialArm<7> arm(Panda::chain());
-    return fpbm::Tracker<fpbm::SerialArm<7>, fpbm::Pose, decltype(damped()), Guard>(
+    return fpbm::Tracker<fpbm::SerialArm<7>, fpbm::Pose, decltype(damped()), Kept>(
         arm, fpbm::Pose{}, damped(), {q, fpbm::Vector<7>::Zero()}, {},
-        fpbm::Limits<fpbm::Level::kAcceleration, 7>(arm.limits(), 1e-3), fpbm::Vector<7>::Zero(),
-        Guard(surroundings()));
+        fpbm::Limits<fpbm::Level::kAcceleration, 7>(arm.limits(), 1e-3), fpbm::Vector<7>::Zero(), Kept(surroundings()));
   }
 };
 

@@ -15,7 +15,7 @@ double run(const char* name, const Clearance& kept, Clearance measured) {
   const fpbm::Limits<fpbm::Level::kAcceleration, 7> limits(arm.limits(), 1e-3);
   const auto scheme = fpbm::FPBM<7>(0.6, fpbm::UnitWeights{}, 10.0, 25.0, fpbm::NullSpace<7>().with_damping(2.0));
   fpbm::Tracker tracker(arm, fpbm::Position<3>{}, scheme, fpbm::State<7>{q0, rest}, {}, limits, rest,
-                        fpbm::Guard<fpbm::Level::kAcceleration, 7>(kept));
+                        fpbm::Bounds(kept));
 
   const fpbm::Path line(fpbm::Line<3>({0.3, 0.2, -0.4}), 2.0);  // displacement [m], duration [s]
   fpbm::PathFollower follower(line, tracker.tip(), 1e-3);

@@ -5,7 +5,6 @@
 #include <fpbm/fpbm.hpp>
 
 int main() {
-  using Guard = fpbm::Guard<fpbm::Level::kAcceleration, 7>;
   const fpbm::Chain<> chain = fpbm::presets::panda();
   const fpbm::Robot<7> robot(chain);
   constexpr int kTip = fpbm::Robot<7>::kTip;
@@ -18,17 +17,16 @@ int main() {
   fpbm::PositionBounds<> wall{{4}};  // Of link 4, the elbow.
   wall.upper(1) = 0.04;              // [m]
   wall.deceleration = 1.0;           // [m/s²]
-  fpbm::PositionBounds<> slow{{kTip}};
-  slow.velocity = 0.5;  // [m/s]
-  fpbm::Clearance<7> clearance(chain, {}, {}, 0.0);
-  clearance.keep(wall);
-  clearance.keep(slow);
+  fpbm::TaskBounds<7> walls(chain);
+  walls.keep(wall);
+  fpbm::SpeedBounds<7> speeds(chain);
+  speeds.keep({{kTip}, 0.5});  // [m/s]
 
   const fpbm::TrackerOptions<> options;  // 1 kHz
   const fpbm::Limits<fpbm::Level::kAcceleration, 7> limits(robot.limits(), options.dt);
   const fpbm::Vector<7> rest = fpbm::Vector<7>::Zero();
-  auto tracker = fpbm::stack_tracker<Guard>(robot, stack, scheme, fpbm::State<7>{q0, rest}, options, limits, rest,
-                                            Guard(clearance));
+  auto tracker = fpbm::stack_tracker(robot, stack, scheme, fpbm::State<7>{q0, rest}, options, limits, rest,
+                                     fpbm::Bounds(walls, speeds));
 
   const auto [axis, start, posture] = tracker.tip();
   const auto upright = fpbm::Reference<fpbm::Direction>::hold(axis);

@@ -140,15 +140,15 @@ TEST(NoAllocation, in_space) {
 }
 
 /// All calls of a control loop, with reachable targets, references that violate all limits, and NaN.
-template <typename Space, typename Arm, typename Scheme, typename Guard = Unguarded>
-void expect_none_in_a_loop(const Arm& arm, const Scheme& scheme, const Guard& guard = {}) {
+template <typename Space, typename Arm, typename Scheme, typename Bounds_ = Bounds<>>
+void expect_none_in_a_loop(const Arm& arm, const Scheme& scheme, const Bounds_& bounds = {}) {
   constexpr int N = Arm::kDof;
   const Vector<N> q0 = panda_ready();
   TrackerOptions<> options;
   options.integral_gain = 1.0;
-  Tracker<Arm, Space, Scheme, Guard> tracker(arm, Space{}, scheme, State<N>{q0, Vector<N>::Zero(7)}, options,
-                                             Limits<Scheme::kLevel, N>(arm.limits(), options.dt), Vector<N>::Zero(7),
-                                             guard);
+  Tracker<Arm, Space, Scheme, Bounds_> tracker(arm, Space{}, scheme, State<N>{q0, Vector<N>::Zero(7)}, options,
+                                               Limits<Scheme::kLevel, N>(arm.limits(), options.dt), Vector<N>::Zero(7),
+                                               bounds);
   const auto home = Reference<Space>::hold(tracker.tip());
   const InPlane circle(Path(Circle(0.05), 0.5), Vector<3>::UnitY(), Vector<3>::UnitZ());
   const WithRotation turning(circle, Vector<3>(0.1, 0.2, 0.3));
@@ -194,7 +194,7 @@ TEST(NoAllocation, in_a_control_loop) {
       {"post", Capsule<>{{0.4, 0.3, 0.0}, {0.4, 0.3, 1.0}, 0.03}, Vector<3>(0.0, -0.1, 0.0)},
       {"box", Cuboid<>{{Vector<3>(0.4, -0.4, 0.4), Matrix<3, 3>::Identity()}, Vector<3>::Constant(0.1)}}};
   const Clearance<7> clearance(presets::panda(), presets::capsules::panda(), obstacles, 0.005);
-  expect_none_in_a_loop<Pose>(fixed, fpbm, Guard<Level::kAcceleration, 7>(clearance));
+  expect_none_in_a_loop<Pose>(fixed, fpbm, Bounds(clearance));
 }
 
 /// In both lanes, the limits are active, so that each tracker completes its ticks separately.

@@ -143,7 +143,7 @@ void expect_all_near_pairs() {
       const Eigen::Index n = clearance.robot().dof();
       const Eigen::Index joints = clearance.robot().joints();
       Vector<kOpen, Scalar> q = random.uniform(n, -1.5, 1.5).template cast<Scalar>();
-      NearPairs<Clearance<kOpen, Scalar>> near(clearance);
+      NearPairs<Shapes<kOpen, Scalar>> near(clearance);
       auto placed = clearance.placement();
       const double size = std::pow(10.0, random.uniform(-7.0, -1.0));  // From below the round-off of float to 0.1 rad.
       const Joints drift = size * random.uniform(n, -1.0, 1.0);

@@ -35,8 +35,8 @@ Soaked soak(Tracker_ tracker, const Path_& path, double ticks) {
         return soaked;
       }
       soaked.error = std::fmax(soaked.error, tick.error.norm());
-      if constexpr (Tracker_::kGuarded) {
-        const auto& clearance = tracker.guard().clearance();
+      if constexpr (Tracker_::kBounded) {
+        const auto& clearance = tracker.bounds().template get<Clearance<7>>();
         soaked.nearest = std::fmin(soaked.nearest, clearance.nearest_pair(tick.q).second - clearance.margin());
       }
     }
@@ -56,7 +56,7 @@ Soaked soak_planar(double ticks) {
 }
 
 Soaked soak_among_shapes(double ticks) {
-  using Shapes = Guard<Level::kAcceleration, 7>;
+  using Shapes = Bounds<Clearance<7>>;
   const auto panda = presets::panda();
   const SerialArm<7> arm(panda);
   const Vector<7> q0{0.0, -0.7854, 0.0, -2.3562, 0.0, 1.5708, 0.7854};

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <string>
 
-#include "fpbm/bound/guard.hpp"
+#include "fpbm/bound/axis_bounds.hpp"
+#include "fpbm/bound/position_bounds.hpp"
+#include "fpbm/bound/speed_bounds.hpp"
 #include "fpbm/realtime/tracker.hpp"
 #include "support/arms.hpp"
 #include "support/wild_reference.hpp"
@@ -28,12 +30,12 @@ template <Level kLevel>
   }
 }
 
-template <Level kLevel>
-using GuardedTracker = Tracker<AnyArm<Position<3>>, Position<3>, decltype(scheme<kLevel>()), Guard<kLevel, kOpen>>;
+template <Level kLevel, typename Bound>
+using BoundedTracker = Tracker<AnyArm<Position<3>>, Position<3>, decltype(scheme<kLevel>()), Bounds<Bound>>;
 
-template <Level kLevel>
-[[nodiscard]] GuardedTracker<kLevel> tracker_of(const AnyArm<Position<3>>& arm, const Vector<kOpen>& q,
-                                                const Clearance<kOpen>& clearance, double tick = kTick) {
+template <Level kLevel, typename Bound>
+[[nodiscard]] BoundedTracker<kLevel, Bound> tracker_of(const AnyArm<Position<3>>& arm, const Vector<kOpen>& q,
+                                                       const Bound& bound, double tick = kTick) {
   return {arm,
           Position<3>{},
           scheme<kLevel>(),
@@ -41,7 +43,7 @@ template <Level kLevel>
           TrackerOptions<>{tick},
           Limits<kLevel, kOpen>(arm.limits(), tick),
           Vector<kOpen>(0.0 * q),
-          Guard<kLevel, kOpen>(clearance)};
+          Bounds(bound)};
 }
 
 /// A frame on a link. The pose of the frame is independent of the kinematics of the clearance.
@@ -110,11 +112,11 @@ template <Level kLevel>
   AxisBounds<> cone{turned.frame, axis, d};
   cone.upper = least + random.uniform(0.02, 0.5);
   if (seed % 4 == 0) cone.lower = std::max(0.0, least - random.uniform(0.02, 0.1));
-  Clearance<kOpen> clearance(chain, {}, {}, seed % 5 == 0 ? 0.01 : 0.0);
-  clearance.keep(walls);
-  clearance.keep(cone);
+  TaskBounds<kOpen> kept(chain);
+  kept.keep(walls);
+  kept.keep(cone);
 
-  GuardedTracker<kLevel> tracker = tracker_of<kLevel>(arm, q0, clearance, h);
+  auto tracker = tracker_of<kLevel>(arm, q0, kept, h);
   const auto& bounds = arm.limits();
   Excess excess;
   Vector<kOpen> q = q0;
@@ -182,9 +184,9 @@ void expect_gentle_stop() {
   PositionBounds<> bounds{point.frame};
   bounds.upper(1) = wall;
   bounds.deceleration = kDeceleration;
-  Clearance<kOpen> clearance(chain, {}, {}, 0.0);
-  clearance.keep(bounds);
-  GuardedTracker<kLevel> tracker = tracker_of<kLevel>(arm, q0, clearance);
+  TaskBounds<kOpen> kept(chain);
+  kept.keep(bounds);
+  auto tracker = tracker_of<kLevel>(arm, q0, kept);
   auto target = Reference<Position<3>>::hold(tracker.tip());
   target.x(1) += 0.4;
   double y = tracker.tip()(1);
@@ -224,15 +226,10 @@ TEST(TaskBounds, keep_speeds) {
   const Vector<kOpen> q0 = Vector<7>{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785};
   const Frame elbow(chain, 4, {});
   const Frame hand(chain, kTip, {});
-  PositionBounds<> slow{elbow.frame};
-  slow.velocity = 0.05;
-  slow.rows = {false, false, true};
-  AxisBounds<> steady{hand.frame, Vector<3>::UnitZ(), Vector<3>::UnitX()};
-  steady.velocity = 0.2;
-  Clearance<kOpen> clearance(chain, {}, {}, 0.0);
-  clearance.keep(slow);
-  clearance.keep(steady);
-  auto tracker = tracker_of<Level::kAcceleration>(arm, q0, clearance);
+  SpeedBounds<kOpen> speeds(chain);
+  speeds.keep({elbow.frame, 0.05, {false, false, true}});
+  speeds.keep({hand.frame, 0.2, {true, true, true}, Vector<3>::UnitZ()});
+  auto tracker = tracker_of<Level::kAcceleration>(arm, q0, speeds);
   Random random(1);
   const Vector<3> tip = tracker.tip();
   auto target = Reference<Position<3>>::hold(tip);
@@ -262,9 +259,7 @@ TEST(TaskBounds, keep_speeds) {
 /// Invalid bounds are rejected, and the message names the error.
 TEST(TaskBounds, name_the_invalid_argument) {
   const Chain<> chain = presets::panda();
-  const auto with = [&](const auto& bounds) {
-    return complaint([&] { Clearance<7>(chain, {}, {}, 0.0).keep(bounds); });
-  };
+  const auto with = [&](const auto& bounds) { return complaint([&] { TaskBounds<7>(chain).keep(bounds); }); };
   AxisBounds<> cone{{kTip}, Vector<3>::UnitZ(), Vector<3>::Zero()};
   EXPECT_EQ(with(cone), "direction = 0: must be a nonzero vector");
   cone.direction = Vector<3>::UnitX();

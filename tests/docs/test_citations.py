@@ -36,5 +36,5 @@ def test_cited_tests_exist(file: Path) -> None:
 
 
 def test_a_missing_test_is_found() -> None:
-    assert missing("/// Guard.does_not_exist fails.", suites=True) == ["Guard.does_not_exist"]
+    assert missing("/// Bounds.does_not_exist fails.", suites=True) == ["Bounds.does_not_exist"]
     assert missing("`fpbm_tests --gtest_filter='Guards*'`", suites=False) == ["Guards*"]

@@ -169,9 +169,9 @@ fpbm::Clearance<7> any_clearance(Bytes& bytes) {
   return {chain, capsules, obstacles, bytes.chance(128) ? 0.0 : bytes.spread(1e-4, 0.05), never_collide};
 }
 
-/// guard: none, or the clearance of the arm.
-template <typename Tracker_, typename Arm, typename Space, typename Scheme, typename... Guards>
-void run_tracker(Bytes& bytes, const Arm& arm, Space space, const Scheme& scheme, bool wild, const Guards&... guard) {
+/// bounds: none, or the clearance of the arm.
+template <typename Tracker_, typename Arm, typename Space, typename Scheme, typename... Given>
+void run_tracker(Bytes& bytes, const Arm& arm, Space space, const Scheme& scheme, bool wild, const Given&... bounds) {
   constexpr int N = Arm::kDof;
   fpbm::TrackerOptions<> options;
   options.dt = bytes.spread(1e-4, 2e-2);
@@ -186,8 +186,8 @@ void run_tracker(Bytes& bytes, const Arm& arm, Space space, const Scheme& scheme
   const auto bounds = bytes.chance(64) ? arm.limits() : any_limits<N>(bytes, arm.dof(), wild);
   const auto start = any_start<N>(bytes, bounds, wild);
   const fpbm::Limits<Scheme::kLevel, N> limits(bounds, options.dt);
-  Tracker_ tracker(arm, space, scheme, start, options, limits, fpbm::Vector<N>::Zero(arm.dof()), guard...);
-  Tracker_ twin(arm, space, scheme, start, options, limits, fpbm::Vector<N>::Zero(arm.dof()), guard...);
+  Tracker_ tracker(arm, space, scheme, start, options, limits, fpbm::Vector<N>::Zero(arm.dof()), bounds...);
+  Tracker_ twin(arm, space, scheme, start, options, limits, fpbm::Vector<N>::Zero(arm.dof()), bounds...);
   // From a huge tick or start, the arm cannot brake without overflow.
   if (!(options.dt > 1e-9 && options.dt < 1e9 && start.q.norm() < 1e100 && start.qd.norm() < 1e100)) return;
   const Keeper<N> keeper{limits.bounds(), options.dt};
@@ -202,8 +202,8 @@ void run_tracker(Bytes& bytes, const Arm& arm, Space space, const Scheme& scheme
             "the state is the command");
     if (!wild) keeper.require_kept(before, last, result.q, result.qd, result.qdd, kEvenly);
     last = result.qdd;
-    if constexpr (Tracker_::kGuarded) {
-      auto clearance = tracker.guard().clearance();
+    if constexpr (Tracker_::kBounded) {
+      auto clearance = tracker.bounds().template get<fpbm::Clearance<7>>();
       require(wild || clearance.nearest_pair(result.q).second >= clearance.margin() - keeper.kSlack,
               "pairs keep their margin");
     }
@@ -286,10 +286,9 @@ void run(Bytes& bytes, const Arm& arm, Space space, const Scheme& scheme, bool w
     return;
   }
   if constexpr (std::is_same_v<Arm, fpbm::SerialArm<7>>) {
-    using Guard = fpbm::Guard<Scheme::kLevel, 7>;
+    using Kept = fpbm::Bounds<fpbm::Clearance<7>>;
     if (bytes.chance(128)) {
-      run_tracker<fpbm::Tracker<Arm, Space, Scheme, Guard>>(bytes, arm, space, scheme, wild,
-                                                            Guard(any_clearance(bytes)));
+      run_tracker<fpbm::Tracker<Arm, Space, Scheme, Kept>>(bytes, arm, space, scheme, wild, Kept(any_clearance(bytes)));
       return;
     }
   }

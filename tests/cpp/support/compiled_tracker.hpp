@@ -4,7 +4,7 @@
 
 #include "fpbm/any/any_arm.hpp"
 #include "fpbm/any/detail/any_path.hpp"
-#include "fpbm/bound/guard.hpp"
+#include "fpbm/bound/bounds.hpp"
 #include "fpbm/realtime/tracker.hpp"
 #include "fpbm/scheme/schemes.hpp"
 
@@ -13,7 +13,7 @@ namespace fpbm::test {
 
 /// A Tracker whose members are defined in compiled_tracker_members.hpp. trackers_*.cpp instantiate the types that the
 /// tests use. Any other type is an undefined symbol for the linker.
-template <typename Arm, typename Space, typename Scheme, typename Guard = Unguarded>
+template <typename Arm, typename Space, typename Scheme, typename Bounds_ = Bounds<>>
 class CompiledTracker {
  public:
   using Scalar = typename Arm::Scalar;
@@ -54,7 +54,7 @@ class CompiledTracker {
   void require_viable(const JointLimits& limits) const;
 
  private:
-  std::unique_ptr<Tracker<Arm, Space, Scheme, Guard>> tracker_;
+  std::unique_ptr<Tracker<Arm, Space, Scheme, Bounds_>> tracker_;
 };
 
 }  // namespace fpbm::test

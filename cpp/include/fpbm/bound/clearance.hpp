@@ -1,108 +1,40 @@
 #pragma once
 
-#include <array>
-#include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "fpbm/bound/bounds.hpp"
+#include "fpbm/bound/detail/advancement.hpp"
 #include "fpbm/bound/detail/away.hpp"
-#include "fpbm/bound/detail/body.hpp"
-#include "fpbm/bound/detail/link_capsule.hpp"
-#include "fpbm/bound/detail/placement.hpp"
-#include "fpbm/bound/obstacle.hpp"
-#include "fpbm/model/detail/spread_posture.hpp"
-#include "fpbm/model/robot.hpp"
+#include "fpbm/bound/detail/motion_away.hpp"
+#include "fpbm/bound/detail/pair_rows.hpp"
+#include "fpbm/bound/detail/shapes.hpp"
+#include "fpbm/bound/detail/too_close.hpp"
 
 namespace fpbm {
 
-/// The shapes of a robot and its environment, and the pairs of shapes that must keep a margin: docs/clearance.md.
-/// Obstacles may move. All other data are constant after construction. Joints: number of all joints, N by default;
-/// Eigen::Dynamic for a robot with joints that follow others.
+/// Bound of a Tracker: all pairs of shapes (Shapes) keep their margin, docs/clearance.md.
+///
+/// No pair of static shapes comes closer than its margin: a tick is accepted only if all pairs keep their margin until
+/// the arm is at rest (Advancement). If the proof fails only for pairs with moving obstacles, the tick is accepted,
+/// because the rows bound the motion toward these obstacles.
 template <int N, typename Scalar_ = double, int Joints = N>
-class Clearance {
+class Clearance : public Shapes<N, Scalar_, Joints> {
  public:
   using Scalar = Scalar_;
-  using JointVector = Vector<N, Scalar>;
-  using Vector3 = Vector<3, Scalar>;
-  using Tree = Robot<N, Scalar, Joints>;  ///< With all joints: drives and followers.
-  using AllJoints = Vector<Joints, Scalar>;
-  using Body = fpbm::Body<Scalar, Joints>;
-  using Placement = fpbm::Placement<N, Scalar, Joints>;
-  using Names = std::pair<std::string, std::string>;
-
-  /// Bound `most` on the speed of a body over the coordinates `rows` of the base frame [m/s], or [rad/s] for a
-  /// direction.
-  struct SpeedBound {
-    Body body;
-    std::array<bool, 3> rows;
-    Scalar most;
-  };
+  using Base = Shapes<N, Scalar, Joints>;
+  using JointVector = typename Base::JointVector;
+  static constexpr int kRows = PairRows<Base, N>::kPairs;
+  static constexpr Status kStatus = Status::kBlocked;
 
   /// source: the Tree or the Chain of the robot. margin: smallest distance of a pair [m]. allowed: names of pairs that
-  /// are not checked. Pairs of a link and its parent link are not checked. Throws std::invalid_argument if a number is
-  /// out of range, a link does not exist, or a prismatic joint without bounds is between a revolute joint and a
-  /// capsule.
+  /// are not checked. Throws the errors of Shapes.
   template <typename Source>
   Clearance(const Source& source, const std::vector<LinkCapsule<Scalar>>& capsules,
-            const std::vector<Obstacle<Scalar>>& obstacles, Scalar margin, const std::vector<Names>& allowed = {})
-      : robot_(source), levers_(source), obstacles_(obstacles), margin_(margin) {
-    validation::require_non_negative("margin", margin);
-    for (std::size_t i = 0; i < capsules.size(); ++i) {
-      const auto& [link, capsule, name] = capsules[i];
-      const validation::Argument argument = validation::element("capsules", static_cast<Eigen::Index>(i));
-      capsules[i].require_sound(argument, robot_.joints());
-      bodies_.emplace_back(levers_, link, robot_.in_joint(link, {}), capsule, name);
-      if (!bodies_.back().levers.allFinite()) reject_unbounded(source, argument, link);
-    }
-    for (std::size_t i = 0; i < obstacles_.size(); ++i) {
-      obstacles_[i].require_sound(validation::element("obstacles", static_cast<Eigen::Index>(i)));
-    }
-    const auto is_allowed = [&allowed](const std::string& a, const std::string& b) {
-      return std::any_of(allowed.begin(), allowed.end(),
-                         [&](const Names& names) { return names == Names(a, b) || names == Names(b, a); });
-    };
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      for (std::size_t j = 0; j < bodies_.size(); ++j) {
-        if (!may_collide(bodies_[i].link, bodies_[j].link) || is_allowed(bodies_[i].name, bodies_[j].name)) continue;
-        pairs_.push_back(pair_of_bodies(i, j));
-      }
-      for (std::size_t j = 0; j < obstacles_.size(); ++j) {
-        if (bodies_[i].link == 0 || is_allowed(bodies_[i].name, obstacles_[j].name)) continue;
-        pairs_.push_back({i, j, true, robot_.moved_by(bodies_[i].link), 0});
-      }
-    }
-    exclude_overlaps();
-    shape_pairs_ = pairs_.size();
-  }
-
-  [[nodiscard]] const Tree& robot() const noexcept { return robot_; }
-  [[nodiscard]] const std::vector<Body>& bodies() const noexcept { return bodies_; }
-  [[nodiscard]] const std::vector<ShapePair>& pairs() const noexcept { return pairs_; }
-  [[nodiscard]] const std::vector<Obstacle<Scalar>>& obstacles() const noexcept { return obstacles_; }
-  [[nodiscard]] const Levers<Scalar>& levers() const noexcept { return levers_; }
-  [[nodiscard]] Scalar margin() const noexcept { return margin_; }
-
-  [[nodiscard]] Names names(const ShapePair& pair) const {
-    return {bodies_[pair.first].name, pair.world ? obstacles_[pair.second].name : bodies_[pair.second].name};
-  }
-
-  /// Number of pairs of shapes. In pairs(), the bounds of tasks follow the pairs of shapes.
-  [[nodiscard]] std::size_t shape_pairs() const noexcept { return shape_pairs_; }
-
-  /// Pairs that are not checked, because they are closer than the margin in all of many sampled postures.
-  [[nodiscard]] const std::vector<ShapePair>& excluded_pairs() const noexcept { return excluded_pairs_; }
-
-  /// Moves obstacle i. velocity: expected velocity of the obstacle after the call [m/s]. Returns false without effect
-  /// if obstacle i does not exist or has another type of shape.
-  bool move(std::size_t i, const WorldShape<Scalar>& shape, const Vector3& velocity) noexcept {
-    if (i >= obstacles_.size() || obstacles_[i].shape.index() != shape.index()) return false;
-    obstacles_[i].shape = shape;
-    obstacles_[i].velocity = velocity;
-    ++obstacles_[i].moves;
-    return true;
-  }
+            const std::vector<Obstacle<Scalar>>& obstacles, Scalar margin,
+            const std::vector<std::pair<std::string, std::string>>& allowed = {})
+      : Base(source, capsules, obstacles, margin, allowed), near_(*this), advancement_(*this), rows_(*this) {}
 
   /// Enables null-space motion away from shapes. Throws std::invalid_argument if a number is out of range.
   void keep_away(const Away<Scalar>& away) {
@@ -110,155 +42,48 @@ class Clearance {
     validation::require_positive("away.range", away.range);
     away_ = away;
   }
-  [[nodiscard]] const Away<Scalar>& away() const noexcept { return away_; }
 
-  /// Adds bounds of a task: PositionBounds or AxisBounds. Throws the errors of Bounds::add_to().
-  template <typename Bounds>
-  void keep(const Bounds& bounds) {
-    bounds.add_to(*this);
-  }
+  [[nodiscard]] bool empty() const noexcept { return this->pairs().empty(); }
 
-  /// Adds the bound n·x ≥ offset on the point or direction x of a body. The radius of the body is −margin(), so that
-  /// the margin of shapes does not apply to the bound. deceleration: largest deceleration toward the bound [m/s²], or
-  /// [1/s²] of a direction.
-  void add_lower_bound(Body body, const Vector3& n, Scalar offset, Scalar deceleration) {
-    if (!(deceleration > Scalar(0))) validation::fail("deceleration", deceleration, "positive, or infinite");
-    body.deceleration = deceleration;
-    pairs_.push_back({bodies_.size(), obstacles_.size(), true, robot_.moved_by(body.link), 0});
-    obstacles_.push_back({body.name, HalfSpace<Scalar>{n, offset}});
-    bodies_.push_back(std::move(body));
-  }
-
-  /// Adds a bound on the speed of a body. Throws std::invalid_argument unless the bound is positive.
-  void bound_speed(SpeedBound bound) {
-    if (!(bound.most > Scalar(0))) validation::fail("velocity", bound.most, "positive, or infinite");
-    if (std::isfinite(bound.most)) speed_bounds_.push_back(std::move(bound));
-  }
-  [[nodiscard]] const std::vector<SpeedBound>& speed_bounds() const noexcept { return speed_bounds_; }
-
-  /// Whether any obstacle has a velocity.
-  [[nodiscard]] bool moves() const noexcept {
-    return std::any_of(obstacles_.begin(), obstacles_.end(),
-                       [](const auto& each) { return !each.velocity.isZero(Scalar(0)); });
-  }
-
-  /// Memory for place().
-  [[nodiscard]] Placement placement() const {
-    Placement placed;
-    placed.bodies.resize(bodies_.size());
-    placed.centres.resize(bodies_.size());
-    placed.speed_points.resize(speed_bounds_.size());
-    return placed;
-  }
-
-  /// Computes the bodies in a posture. placed: a placement(). Bodies added after placement() are not placed.
-  void place(const JointVector& q, Placement& placed) const noexcept {
-    robot_.update(q, placed.state);
-    placed.set_axes(robot_.joints(), [this](Eigen::Index k) noexcept { return robot_.turns(k); });
-    const auto frame = [&](const Body& body) { return placed.state.placement(static_cast<std::size_t>(body.link)); };
-    for (std::size_t i = 0; i < placed.bodies.size(); ++i) {
-      Capsule<Scalar>& body = placed.bodies[i];
-      body = bodies_[i].placed_by(frame(bodies_[i]));
-      placed.centres[i] = (body.a + body.b) / Scalar(2);
-    }
-    for (std::size_t i = 0; i < placed.speed_points.size(); ++i) {
-      const Body& body = speed_bounds_[i].body;
-      placed.speed_points[i] = body.point_by(frame(body));
+  /// Throws std::invalid_argument with the names of the pair if a pair is closer than the margin.
+  void require(const JointVector& q) {
+    validation::require_size("joints of the clearance", this->robot().dof(), q.size());
+    near_.set_posture(*this, q);
+    const auto [pair, distance] = this->nearest_pair(near_.here());
+    if (!(distance >= this->margin())) {
+      reject_close(this->names(this->pairs()[pair]), static_cast<double>(distance),
+                   static_cast<double>(this->margin()));
     }
   }
 
-  /// Lower bound on the distance of a pair [m]. Cheaper than nearest_of().
-  [[nodiscard]] Scalar distance_lower_bound(const Placement& placed, const ShapePair& pair) const noexcept {
-    const Scalar size = bodies_[pair.first].size;
-    const Vector3& centre = placed.centres[pair.first];
-    if (pair.world) return obstacles_[pair.second].at_least(centre, size);
-    return (centre - placed.centres[pair.second]).norm() - size - bodies_[pair.second].size;
+  template <Level kLevel, int P>
+  void rows(const NextMotion<kLevel, N, Scalar>& next, Rows<N, P, Scalar>& rows) noexcept {
+    near_.set_posture(*this, next.state.q);
+    rows_.add(*this, near_, next, rows);
   }
 
-  [[nodiscard]] Nearest<Scalar> nearest_of(const Placement& placed, const ShapePair& pair) const noexcept {
-    const Capsule<Scalar>& first = placed.bodies[pair.first];
-    return pair.world ? obstacles_[pair.second].nearest_to(first) : nearest(first, placed.bodies[pair.second]);
+  template <Level kLevel>
+  [[nodiscard]] bool accepts(const State<N, Scalar>&, const Stop<kLevel, N, Scalar>& stop) noexcept {
+    if (advancement_.keeps_margins(*this, near_, stop.displacement, stop.time)) return true;
+    return this->moves() && advancement_.keeps_margins(*this, near_, stop.displacement, stop.time, Pairs::kStatic);
   }
 
-  /// The nearest pair of shapes in a posture and its distance [m]. The distance is infinite if there are no pairs.
-  [[nodiscard]] std::pair<std::size_t, Scalar> nearest_pair(const JointVector& q) const {
-    Placement memory = placement();
-    return nearest_pair(q, memory);
-  }
-  /// The nearest pair of shapes, without an allocation. memory: a placement().
-  [[nodiscard]] std::pair<std::size_t, Scalar> nearest_pair(const JointVector& q, Placement& memory) const noexcept {
-    place(q, memory);
-    return nearest_pair(memory, 0, shape_pairs_);
-  }
+  /// Sum of the distances of the pairs that rows() found near [m]. While the arm is at rest, the sum changes only if
+  /// obstacles move.
+  [[nodiscard]] Scalar near_distance_sum() const noexcept { return rows_.distance_sum(); }
 
-  /// The nearest pair of the pairs first to end − 1, which may include bounds of tasks.
-  [[nodiscard]] std::pair<std::size_t, Scalar> nearest_pair(const Placement& placed, std::size_t first,
-                                                            std::size_t end) const noexcept {
-    std::pair<std::size_t, Scalar> found{pairs_.size(), std::numeric_limits<Scalar>::infinity()};
-    for (std::size_t i = first; i < end; ++i) {
-      if (distance_lower_bound(placed, pairs_[i]) >= found.second) continue;
-      const Scalar distance = nearest_of(placed, pairs_[i]).distance;
-      if (distance < found.second) found = {i, distance};
-    }
-    return found;
+  /// Whether null-space motion away from shapes is enabled.
+  [[nodiscard]] bool moves_away() const noexcept { return away_.gain > Scalar(0) && !empty(); }
+  /// Null-space motion away from shapes in the posture q.
+  [[nodiscard]] JointVector away(const JointVector& q) noexcept {
+    near_.set_posture(*this, q);
+    return motion_away<Base>(*this, near_.here(), away_);
   }
 
  private:
-  /// Throws the error of a capsule with an infinite lever: a prismatic joint without bounds is between a revolute joint
-  /// and the capsule. A mobile base whose revolute joint is last has finite levers.
-  template <typename Source>
-  void reject_unbounded(const Source& source, const validation::Argument& argument, int link) const {
-    bool turns = false;
-    std::string rail;
-    each_joint(robot_.moved_by(link), [&](Eigen::Index k) {
-      const auto& joint = joint_of(source, k);
-      turns = turns || robot_.turns(k);
-      const bool bounded = std::isfinite(joint.bounds.lower) && std::isfinite(joint.bounds.upper);
-      if (turns && !robot_.turns(k) && !bounded) rail = joint.name;
-    });
-    if (!rail.empty()) {
-      validation::reject(argument, ".link = ", link, ": moves with the prismatic joint '", rail,
-                         "', which has no bounds, after a revolute joint: give the joint lower and upper bounds");
-    }
-    validation::reject(argument, ": is too large: its lever about a joint must be finite");
-  }
-  /// Whether a pair of links is checked: `first` is the later link, and `second` is not the parent of `first`.
-  [[nodiscard]] bool may_collide(int first, int second) const noexcept {
-    return first > second && robot_.parent(first) != second;
-  }
-  [[nodiscard]] ShapePair pair_of_bodies(std::size_t i, std::size_t j) const noexcept {
-    const JointBits first = robot_.moved_by(bodies_[i].link);
-    const JointBits second = robot_.moved_by(bodies_[j].link);
-    return {i, j, false, first & ~second, second & ~first};
-  }
-  void exclude_overlaps() {
-    if (pairs_.empty()) return;
-    // A pair that is clear in 2 % of independent postures would be excluded with a probability of 0.98²⁵⁶ = 0.6 %.
-    constexpr int kPostures = 256;
-    std::vector<bool> apart(pairs_.size(), false);
-    Placement placed = placement();
-    for (int k = 0; k < kPostures; ++k) {
-      place(spread_posture(robot_.limits(), k), placed);
-      for (std::size_t p = 0; p < pairs_.size(); ++p) {
-        if (apart[p]) continue;
-        apart[p] =
-            distance_lower_bound(placed, pairs_[p]) >= margin_ || nearest_of(placed, pairs_[p]).distance >= margin_;
-      }
-    }
-    std::vector<ShapePair> kept;
-    for (std::size_t p = 0; p < pairs_.size(); ++p) (apart[p] ? kept : excluded_pairs_).push_back(pairs_[p]);
-    pairs_ = kept;
-  }
-
-  Tree robot_;
-  Levers<Scalar> levers_;
-  std::vector<Body> bodies_;  ///< The bodies of bounds of tasks are last.
-  std::size_t shape_pairs_ = 0;
-  std::vector<SpeedBound> speed_bounds_;
-  std::vector<Obstacle<Scalar>> obstacles_;
-  std::vector<ShapePair> pairs_;
-  std::vector<ShapePair> excluded_pairs_;
-  Scalar margin_;
+  NearPairs<Base> near_;  ///< At the state of rows().
+  Advancement<Base> advancement_;
+  PairRows<Base, N> rows_;
   Away<Scalar> away_;
 };
 

@@ -30,7 +30,7 @@ struct Obstacle {
   std::string name;
   WorldShape<Scalar> shape;
   Vector3 velocity;       ///< Expected velocity of all points [m/s].
-  std::size_t moves = 0;  ///< Number of calls of Clearance::move().
+  std::size_t moves = 0;  ///< Number of calls of Shapes::move().
 
   Obstacle(std::string its_name, const WorldShape<Scalar>& its_shape, const Vector3& its_velocity = Vector3::Zero())
       : name(std::move(its_name)), shape(its_shape), velocity(its_velocity) {}

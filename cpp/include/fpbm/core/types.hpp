@@ -20,6 +20,13 @@ using JointBits = std::uint64_t;
 [[nodiscard]] constexpr JointBits joint_bit(Eigen::Index i) noexcept {
   return JointBits(1) << i;
 }
+/// Calls f(k) for each joint whose bit is set, from the base to the tip.
+template <typename F>
+[[gnu::always_inline]] inline void each_joint(JointBits bits, const F& f) noexcept {
+  for (Eigen::Index k = 0; bits != 0; ++k, bits >>= 1U) {
+    if ((bits & 1U) != 0) f(k);
+  }
+}
 
 /// Matrix of any size without heap allocation.
 /// Unaligned, so that objects with matrices may be embedded, copied and passed between translation units that are

@@ -38,11 +38,24 @@ void require_stable(const ByLevels<Scheme, Stack_>& by_levels, const TickOfGains
   require_stable(by_levels.scheme, TickOfGains<Scalar>{tick.dt, Scalar(0)});
 }
 
-/// Tracker of a stack of tasks. more: further arguments of Tracker's constructors: limits, qdd0 and guard. Throws
+/// The type of the bounds among arguments: Bounds<…>, or Bounds<> if no argument has bounds.
+template <typename... Given>
+struct BoundsAmongOf {
+  using type = Bounds<>;
+};
+template <typename... Each, typename... More>
+struct BoundsAmongOf<Bounds<Each...>, More...> {
+  using type = Bounds<Each...>;
+};
+template <typename First, typename... More>
+struct BoundsAmongOf<First, More...> : BoundsAmongOf<More...> {};
+template <typename... Given>
+using BoundsAmong = typename BoundsAmongOf<Given...>::type;
+
+/// Tracker of a stack of tasks. more: further arguments of Tracker's constructors: limits, qdd0 and bounds. Throws
 /// std::invalid_argument as Tracker does, and if a task does not suit the robot, a level has more rows than the robot
 /// has joints, or the scheme has feedback gains.
-template <typename Guard_ = Unguarded, typename Robot, typename... Levels, typename Scheme, typename Start,
-          typename... More>
+template <typename Robot, typename... Levels, typename Scheme, typename Start, typename... More>
 [[nodiscard]] auto stack_tracker(const Robot& robot, const Stack<Levels...>& stack, const Scheme& scheme,
                                  const Start& start, const TrackerOptions<typename Robot::Scalar>& options = {},
                                  const More&... more) {
@@ -50,7 +63,7 @@ template <typename Guard_ = Unguarded, typename Robot, typename... Levels, typen
   using Space = typename Tasks::Space;
   using Scalar = typename Robot::Scalar;
   require_stack_gains(scheme, stack, TickOfGains<Scalar>{options.dt, options.integral_gain});
-  return Tracker<RobotTasks<Robot, Tasks>, Space, ByLevels<Scheme, Tasks>, Guard_>(
+  return Tracker<RobotTasks<Robot, Tasks>, Space, ByLevels<Scheme, Tasks>, BoundsAmong<More...>>(
       RobotTasks<Robot, Tasks>(robot, stack), Space{}, ByLevels<Scheme, Tasks>(scheme), start, options, more...);
 }
 

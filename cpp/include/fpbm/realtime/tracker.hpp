@@ -34,14 +34,14 @@ namespace fpbm {
 ///
 /// A tick has one motion: the motion of the scheme in the middle of the tick, within the limits (Limiter).
 ///
-/// With a Guard<kLevel, N, Scalar> instead of Unguarded, the arm avoids self-collision and obstacles.
-template <typename Arm, typename Space, typename Scheme, typename Guard_ = Unguarded>
+/// Bounds restrict the motion further: a Clearance, TaskBounds, SpeedBounds.
+template <typename Arm, typename Space, typename Scheme, typename Bounds_ = Bounds<>>
 class Tracker {
  public:
   using Scalar = typename Arm::Scalar;
   static constexpr int N = Arm::kDof;
   static constexpr Level kLevel = Scheme::kLevel;
-  static constexpr bool kGuarded = !std::is_same_v<Guard_, Unguarded>;
+  static constexpr bool kBounded = !std::is_same_v<Bounds_, Bounds<>>;
   static constexpr bool kHasLevels = kLevelsOf<Space> != 1;
   using Target = Reference<Space, Scalar>;
   using References = TickReferences<Space, Scalar>;
@@ -59,12 +59,12 @@ class Tracker {
           const Limits<kLevel, N, Scalar>& limits)
       : Tracker(arm, Space{}, scheme, start, options, limits, filled<JointVector>(start.q.size())) {}
 
-  /// qdd0: acceleration of the previous tick, for bounds on jerk. guard: shapes to avoid.
+  /// qdd0: acceleration of the previous tick, for bounds on jerk. bounds: further bounds.
   Tracker(const Arm& arm, Space, const Scheme& scheme, const JointState& start, const Options& options,
-          const Limits<kLevel, N, Scalar>& limits, const JointVector& qdd0, const Guard_& guard = {})
+          const Limits<kLevel, N, Scalar>& limits, const JointVector& qdd0, const Bounds_& bounds = {})
       : arm_(arm),
         scheme_(scheme),
-        state_(options, limits, start, qdd0, guard, continuous_joints(arm, limits.bounds())),
+        state_(options, limits, start, qdd0, bounds, continuous_joints(arm, limits.bounds())),
         measured_(limits, options.measured_delay),
         last_command_(qdd0) {
     scheme.require_dof(arm.dof());
@@ -87,7 +87,7 @@ class Tracker {
     damping.continuous = state_.continuous;
     give_damping(scheme_, damping);
     require_stable(scheme_, TickOfGains<Scalar>{options.dt, options.integral_gain});
-    if constexpr (kGuarded) state_.guard.require_clear(limits, start, qdd0);
+    state_.require_bounds(start, qdd0);
     if (!state_.returning) state_.progress.begin_at(start.q, kinematics.tip, kinematics.length);
   }
 
@@ -116,7 +116,7 @@ class Tracker {
   Result advance(const References& references) noexcept {
     Result result = state_.idle(state_.tick.joints);
     const auto desired = desire(arm_, scheme_, state_, references, result);
-    finish_tick(desired, state_.rows(), result);
+    finish_tick(desired, state_.rows(desired.u), result);
     return result;
   }
 
@@ -133,10 +133,15 @@ class Tracker {
     result.error = state_.correction.error();
     Desired<Loop, Space, N, Scalar> desired{
         {arm_, scheme_, {}, state(), filled<JointVector>(state().q.size())}, now, u};
-    const auto rows = state_.rows();
-    if (state_.stopping || !state_.admits(rows, u)) {
+    auto rows = state_.rows(u);
+    const bool moves_away = state_.bounds.moves_away();
+    if (moves_away || state_.stopping || !state_.admits(rows, u)) {
       points_of(arm_, state().q, desired.loop.kinematics, 0);
       (void)state_.tick.update_middle(desired.loop, references, gains_of<Scalar>(scheme_));
+    }
+    if (moves_away) {
+      move_away(state_, desired);
+      rows = state_.rows(desired.u);
     }
     state_.tick.reference_change = references.change();
     finish_tick(desired, rows, result);
@@ -196,10 +201,9 @@ class Tracker {
     return true;
   }
 
-  /// The guard: shapes to avoid, and their distances at the start of the last tick. Move shapes of the world with the
-  /// functions of the guard.
-  [[nodiscard]] Guard_& guard() noexcept { return state_.guard; }
-  [[nodiscard]] const Guard_& guard() const noexcept { return state_.guard; }
+  /// The bounds: bounds().template get<Clearance<7>>() is the clearance, whose obstacles can move.
+  [[nodiscard]] Bounds_& bounds() noexcept { return state_.bounds; }
+  [[nodiscard]] const Bounds_& bounds() const noexcept { return state_.bounds; }
 
   /// Tip f(q) of the tracker's own state, the usual start of a PathFollower.
   [[nodiscard]] typename Space::template Point<Scalar> tip() const noexcept {
@@ -221,7 +225,7 @@ class Tracker {
 
   Arm arm_;
   Scheme scheme_;
-  TrackerState<kLevel, Space, N, Scalar, Guard_> state_;
+  TrackerState<kLevel, Space, N, Scalar, Bounds_> state_;
   Measured measured_;
   JointVector last_command_;  ///< Last command for a measured state.
 };

@@ -1,10 +1,7 @@
 #pragma once
 
 #include <cmath>
-#include <cstddef>
-#include <vector>
 
-#include "fpbm/bound/clearance.hpp"
 #include "fpbm/bound/detail/joint_displacement.hpp"
 
 namespace fpbm {
@@ -32,17 +29,17 @@ struct DisplacementBound {
 
   [[nodiscard]] Scalar displacement(Scalar t) const noexcept { return d0 + t * d1; }
 
-  /// Adds the terms of `joints`, the joints that move the body, to the bounds.
-  template <typename Clearance>
-  void add(const Clearance& clearance, const typename Clearance::Body& body, JointBits joints,
-           const JointDisplacement<Clearance>& displacement) noexcept {
+  /// Adds the terms of `joints`, the joints that move the point, to the bounds. levers: of the point.
+  template <typename Robot, int Joints>
+  void add(const Robot& robot, const Vector<Joints, Scalar>& levers, JointBits joints,
+           const JointDisplacement<Joints, Scalar>& displacement) noexcept {
     Scalar line(0);       // Σ |p_j| of the revolute joints before joint k.
     Scalar deviation(0);  // Σ e_j of the revolute joints before joint k.
     each_joint(joints, [&](Eigen::Index k) noexcept {
-      const Scalar lever = body.levers(k);
+      const Scalar lever = levers(k);
       const Scalar v = std::abs(displacement.line(k));
       const Scalar e = displacement.deviation(k);
-      const Scalar half = clearance.robot().turns(k) ? Scalar(0.5) : Scalar(0);
+      const Scalar half = robot.turns(k) ? Scalar(0.5) : Scalar(0);
       d0 += lever * e;
       d1 += lever * v;
       c0 += lever * e * (half * e + deviation);
@@ -52,42 +49,6 @@ struct DisplacementBound {
       deviation += Scalar(2) * half * e;
     });
   }
-};
-
-/// Displacement bounds of the pairs of a clearance along one stopping trajectory. The bound of a body and an obstacle
-/// is computed once for each body.
-template <typename Clearance>
-class DisplacementBounds {
- public:
-  using Bound = DisplacementBound<typename Clearance::Scalar>;
-
-  explicit DisplacementBounds(const Clearance& clearance)
-      : by_body_(clearance.bodies().size()), is_known_(clearance.bodies().size(), 0) {}
-
-  /// Discards the bounds of the previous trajectory.
-  void begin() noexcept { is_known_.assign(is_known_.size(), 0); }
-
-  /// Sum of the bounds of both shapes of a pair. displacement: the same trajectory in all calls after begin().
-  [[nodiscard]] Bound of(const Clearance& clearance, const ShapePair& pair,
-                         const JointDisplacement<Clearance>& displacement) noexcept {
-    const auto& first = clearance.bodies()[pair.first];
-    if (!pair.world) {
-      Bound bound;
-      bound.add(clearance, first, pair.by_first, displacement);
-      if (pair.by_second != 0) bound.add(clearance, clearance.bodies()[pair.second], pair.by_second, displacement);
-      return bound;
-    }
-    if (is_known_[pair.first] == 0) {
-      by_body_[pair.first] = {};
-      by_body_[pair.first].add(clearance, first, pair.by_first, displacement);
-      is_known_[pair.first] = 1;
-    }
-    return by_body_[pair.first];
-  }
-
- private:
-  std::vector<Bound> by_body_;
-  std::vector<unsigned char> is_known_;
 };
 
 }  // namespace fpbm

@@ -10,10 +10,9 @@ namespace fpbm {
 /// s·line + t·ramp_correction + o, where s and t increase from 0 to 1, and low ≤ o ≤ high.
 ///
 /// The displacement r = t·ramp_correction + o is the deviation from the straight line: docs/clearance_proof.md.
-template <typename Clearance>
+template <int Joints, typename Scalar>
 struct JointDisplacement {
-  using Scalar = typename Clearance::Scalar;
-  using AllJoints = typename Clearance::AllJoints;
+  using AllJoints = Vector<Joints, Scalar>;
 
   AllJoints line;
   AllJoints ramp_correction;
@@ -21,9 +20,13 @@ struct JointDisplacement {
   AllJoints high;
   AllJoints deviation;  ///< Bound e on |r|.
 
-  template <int N>
-  JointDisplacement(const Clearance& clearance, const StopDisplacement<N, Scalar>& stop) noexcept
-      : JointDisplacement(clearance.robot().drives(), stop) {}
+  template <typename Drives, int N>
+  JointDisplacement(const Drives& drives, const StopDisplacement<N, Scalar>& stop) noexcept
+      : line(drives.rates(stop.line)),
+        ramp_correction(drives.rates(stop.ramp_correction)),
+        low(drives.least(stop.low, stop.high)),
+        high(-drives.least(-stop.high, -stop.low)),
+        deviation(ramp_correction.cwiseAbs() + high.cwiseMax(-low)) {}
 
   /// Smallest gᵀr, for a gradient g [m/rad or 1]: the largest decrease of a gap by the deviation r.
   [[nodiscard]] Scalar least(const AllJoints& gradient) const noexcept {
@@ -39,15 +42,6 @@ struct JointDisplacement {
   [[nodiscard]] bool opens(const AllJoints& gradient, const AllJoints& start_velocity) const noexcept {
     return gradient.dot(start_velocity) >= Scalar(0) && gradient.dot(ramp_correction) <= Scalar(0);
   }
-
- private:
-  template <typename Drives, int N>
-  JointDisplacement(const Drives& drives, const StopDisplacement<N, Scalar>& stop) noexcept
-      : line(drives.rates(stop.line)),
-        ramp_correction(drives.rates(stop.ramp_correction)),
-        low(drives.least(stop.low, stop.high)),
-        high(-drives.least(-stop.high, -stop.low)),
-        deviation(ramp_correction.cwiseAbs() + high.cwiseMax(-low)) {}
 };
 
 }  // namespace fpbm

@@ -34,12 +34,4 @@ struct ShapePair {
                         ///< the second link is nearer to the base.
 };
 
-/// Calls f(k) for each joint whose bit is set, from the base to the tip.
-template <typename F>
-[[gnu::always_inline]] inline void each_joint(JointBits bits, const F& f) noexcept {
-  for (Eigen::Index k = 0; bits != 0; ++k, bits >>= 1U) {
-    if ((bits & 1U) != 0) f(k);
-  }
-}
-
 }  // namespace fpbm

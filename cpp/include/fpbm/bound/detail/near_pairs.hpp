@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "fpbm/bound/clearance.hpp"
+#include "fpbm/bound/detail/shapes.hpp"
 
 namespace fpbm {
 
@@ -16,59 +16,59 @@ namespace fpbm {
 /// A lower bound on the distance of each pair is kept from tick to tick. From one posture to the next, this bound
 /// decreases by the displacement bounds of both shapes, Σ_k r_k |Δq_k| with the levers r_k. A distance is computed
 /// again only if its lower bound is too small.
-template <typename Clearance>
+template <typename Shapes>
 class NearPairs {
  public:
-  using Scalar = typename Clearance::Scalar;
-  using JointVector = typename Clearance::JointVector;
-  using AllJoints = typename Clearance::AllJoints;
-  using Placement = typename Clearance::Placement;
+  using Scalar = typename Shapes::Scalar;
+  using JointVector = typename Shapes::JointVector;
+  using AllJoints = typename Shapes::AllJoints;
+  using Placement = typename Shapes::Placement;
 
-  explicit NearPairs(const Clearance& clearance)
-      : here_(clearance.placement()),
-        lower_bound_(clearance.pairs().size(), -kUnbounded),
-        nearest_(clearance.pairs().size()),
-        is_known_(clearance.pairs().size(), 0),
-        displacement_(clearance.bodies().size(), Scalar(0)),
-        obstacle_displacement_(clearance.obstacles().size(), Scalar(0)),
-        obstacle_moves_(clearance.obstacles().size(), 0) {
-    here_.state.q = filled<JointVector>(clearance.robot().dof());
+  explicit NearPairs(const Shapes& shapes)
+      : here_(shapes.placement()),
+        lower_bound_(shapes.pairs().size(), -kUnbounded),
+        nearest_(shapes.pairs().size()),
+        is_known_(shapes.pairs().size(), 0),
+        displacement_(shapes.bodies().size(), Scalar(0)),
+        obstacle_displacement_(shapes.obstacles().size(), Scalar(0)),
+        obstacle_moves_(shapes.obstacles().size(), 0) {
+    here_.state.q = filled<JointVector>(shapes.robot().dof());
   }
 
   /// The bodies in the posture of set_posture().
   [[nodiscard]] const Placement& here() const noexcept { return here_; }
 
   /// Computes the bodies in a posture, which need not be near the previous posture.
-  void set_posture(const Clearance& clearance, const JointVector& q) noexcept {
-    set_displacements(clearance, clearance.robot().drives().rates(JointVector(q - here_.state.q)).cwiseAbs());
+  void set_posture(const Shapes& shapes, const JointVector& q) noexcept {
+    set_displacements(shapes, shapes.robot().drives().rates(JointVector(q - here_.state.q)).cwiseAbs());
     // The sum over n joints has a relative error of at most (n/2) ε, and each addition a relative error of ε/2: 4 ε for
     // 7 joints. NearPairs.are_those_of_the_distances_in_float compares the near pairs with the pairs found by distances
     // alone.
     constexpr Scalar kRoundOff = Scalar(4) * std::numeric_limits<Scalar>::epsilon();
     for (std::size_t i = 0; i < lower_bound_.size(); ++i) {
-      const ShapePair& pair = clearance.pairs()[i];
+      const ShapePair& pair = shapes.pairs()[i];
       const Scalar change = displacement_[pair.first] + (pair.world ? Scalar(0) : displacement_[pair.second]);
       lower_bound_[i] -= change + kRoundOff * (std::abs(lower_bound_[i]) + change);
-      if (pair.world && clearance.obstacles()[pair.second].moves != obstacle_moves_[pair.second]) {
+      if (pair.world && shapes.obstacles()[pair.second].moves != obstacle_moves_[pair.second]) {
         lower_bound_[i] = -kUnbounded;
       }
       is_known_[i] = 0;
     }
-    for (std::size_t i = 0; i < obstacle_moves_.size(); ++i) obstacle_moves_[i] = clearance.obstacles()[i].moves;
-    clearance.place(q, here_);
+    for (std::size_t i = 0; i < obstacle_moves_.size(); ++i) obstacle_moves_[i] = shapes.obstacles()[i].moves;
+    shapes.place(q, here_);
   }
 
   /// Sets the displacement bounds of bodies and obstacles. Joint k moves by at most most(k) [rad or m]. Obstacles move
   /// with their velocities for `time` [s].
-  void set_displacements(const Clearance& clearance, const AllJoints& most, Scalar time = Scalar(0)) noexcept {
+  void set_displacements(const Shapes& shapes, const AllJoints& most, Scalar time = Scalar(0)) noexcept {
     Scalar by_joints(0);
     for (std::size_t i = 0; i < displacement_.size(); ++i) {
-      displacement_[i] = clearance.bodies()[i].levers.dot(most);
+      displacement_[i] = shapes.bodies()[i].levers.dot(most);
       by_joints = std::max(by_joints, displacement_[i]);
     }
     largest_ = Scalar(2) * by_joints;
     for (std::size_t i = 0; i < obstacle_displacement_.size(); ++i) {
-      const auto& velocity = clearance.obstacles()[i].velocity;
+      const auto& velocity = shapes.obstacles()[i].velocity;
       obstacle_displacement_[i] = velocity.isZero(Scalar(0)) ? Scalar(0) : time * velocity.norm();
       largest_ = std::max(largest_, by_joints + obstacle_displacement_[i]);
     }
@@ -85,23 +85,23 @@ class NearPairs {
     return pair.world ? obstacle_displacement_[pair.second] : Scalar(0);
   }
 
-  /// Calls f(i, nearest) for each pair i that is closer than needs(pair) in the posture of set_posture(). For a pair of
-  /// shapes, needs() must be at most the margin plus displacement_of().
+  /// Calls f(i, nearest) for each pair i that is closer than needs(pair) in the posture of set_posture(). needs() must
+  /// be at most the margin plus displacement_of().
   template <typename Needs, typename F>
-  [[gnu::always_inline]] void each(const Clearance& clearance, const Needs& needs, const F& f) noexcept {
-    const Scalar most = clearance.margin() + largest_;
+  [[gnu::always_inline]] void each(const Shapes& shapes, const Needs& needs, const F& f) noexcept {
+    const Scalar most = shapes.margin() + largest_;
     for (std::size_t i = 0; i < lower_bound_.size(); ++i) {
-      if (i < clearance.shape_pairs() && lower_bound_[i] >= most) continue;
-      const ShapePair& pair = clearance.pairs()[i];
+      if (lower_bound_[i] >= most) continue;
+      const ShapePair& pair = shapes.pairs()[i];
       const Scalar needed = needs(pair);
       if (lower_bound_[i] >= needed) continue;
       if (is_known_[i] == 0) {
-        const Scalar rough = clearance.distance_lower_bound(here_, pair);
+        const Scalar rough = shapes.distance_lower_bound(here_, pair);
         if (rough >= needed) {
           lower_bound_[i] = rough;
           continue;
         }
-        nearest_[i] = clearance.nearest_of(here_, pair);
+        nearest_[i] = shapes.nearest_of(here_, pair);
         lower_bound_[i] = nearest_[i].distance;
         is_known_[i] = 1;
       }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fpbm/bound/clearance.hpp"
+#include "fpbm/bound/detail/shapes.hpp"
 
 namespace fpbm {
 
@@ -14,12 +14,11 @@ namespace fpbm {
 /// is (n·a − radius of the first) − (n·b + radius of the second). The smallest gap is a lower bound on the distance of
 /// the shapes. In the posture in which n is the normal at the nearest points, the smallest gap equals the distance. If
 /// no joint moves the second shape only, the support of the second shape along n replaces n·b + radius.
-template <typename Clearance>
+template <typename Shapes>
 struct Separation {
-  using Scalar = typename Clearance::Scalar;
-  using AllJoints = typename Clearance::AllJoints;
-  using Placement = typename Clearance::Placement;
-  using Body = typename Clearance::Body;
+  using Scalar = typename Shapes::Scalar;
+  using AllJoints = typename Shapes::AllJoints;
+  using Placement = typename Shapes::Placement;
   using Vector3 = Vector<3, Scalar>;
 
   Scalar distance;
@@ -30,19 +29,18 @@ struct Separation {
   AllJoints of_beyond[2];  ///< Gradient of `beyond`, if joints move the second shape only.
   int seconds = 1;         ///< Number of ends of the second shape that are used.
 
-  /// placed: the bodies of the clearance. found: nearest points of the pair in this placement. `placed` and `found`
+  /// placed: the bodies of the shapes. found: nearest points of the pair in this placement. `placed` and `found`
   /// must outlive the separation.
-  Separation(const Clearance& clearance, const Placement& placed, const ShapePair& pair,
+  Separation(const Shapes& shapes, const Placement& placed, const ShapePair& pair,
              const Nearest<Scalar>& found) noexcept
       : found_(found), first_(placed.bodies[pair.first]) {
     const auto& body = first_;
     const Vector3& n = found.normal;
     distance = found.distance;
     closing = Scalar(0);
-    const auto& first = clearance.bodies()[pair.first];
-    set_ends(placed, first, body, pair.by_first, n, -body.radius, along, gradient);
+    set_ends(placed, body, pair.by_first, n, -body.radius, along, gradient);
     if (pair.world) {
-      const auto& obstacle = clearance.obstacles()[pair.second];
+      const auto& obstacle = shapes.obstacles()[pair.second];
       beyond[0] = obstacle.support_along(n);
       closing = n.dot(obstacle.velocity);
       return;
@@ -54,10 +52,10 @@ struct Separation {
     }
     seconds = 2;
     second_ = &other;
-    set_ends(placed, clearance.bodies()[pair.second], other, pair.by_second, n, other.radius, beyond, of_beyond);
+    set_ends(placed, other, pair.by_second, n, other.radius, beyond, of_beyond);
   }
 
-  Separation(const Clearance&, const Placement&, const ShapePair&, Nearest<Scalar>&&) = delete;
+  Separation(const Shapes&, const Placement&, const ShapePair&, Nearest<Scalar>&&) = delete;
 
   /// Position of the nearest point on the axis of the first shape, from 0 at one end to 1 at the other.
   [[nodiscard]] Scalar at() const noexcept {
@@ -101,11 +99,12 @@ struct Separation {
   }
 
   /// Sets n·x + more for both ends x of the axis of a body, and the gradients with respect to the joints.
-  static void set_ends(const Placement& placed, const Body& body, const Capsule<Scalar>& capsule, JointBits joints,
-                       const Vector3& n, Scalar more, Scalar (&value)[2], AllJoints (&gradient)[2]) noexcept {
+  static void set_ends(const Placement& placed, const Capsule<Scalar>& capsule, JointBits joints, const Vector3& n,
+                       Scalar more, Scalar (&value)[2], AllJoints (&gradient)[2]) noexcept {
     value[0] = n.dot(capsule.a) + more;
     value[1] = n.dot(capsule.b) + more;
-    placed.set_gradients(n, capsule.a, capsule.b, joints, body.is_direction, gradient);
+    gradient[0] = placed.axes.gradient(n, capsule.a, joints);
+    gradient[1] = placed.axes.gradient(n, capsule.b, joints);
   }
 
   const Nearest<Scalar>& found_;

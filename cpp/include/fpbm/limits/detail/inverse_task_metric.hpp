@@ -26,10 +26,10 @@ template <int M, int N, int P, typename Scalar>
 [[nodiscard]] Matrix<M, M, Scalar> inverse_task_metric(const Matrix<M, N, Scalar>& J, const Rows<N, P, Scalar>& rows,
                                                        const Vector<N, Scalar>& desired) noexcept {
   /// μ as a fraction of ‖J‖²_F. The error of a tip that slides along a wall is proportional to μ: at most 0.2 mm with
-  /// 1e-4, and 1.8 mm with 1e-3 (`fpbm_tests --gtest_filter='Guard.slides*'`).
+  /// 1e-4, and 1.8 mm with 1e-3 (`fpbm_tests --gtest_filter='Bounds.slides*'`).
   constexpr Scalar kNullSpaceCost = Scalar(1e-4);
   /// Eigenvalue of A along δ if null-space motion contributes nothing (ν = 0). With 1e-5 to 1e-2,
-  /// Guard.is_the_same_for_joints_counted_at_run_time passes. With 0.1, the motion is so sensitive to round-off that
+  /// Bounds.is_the_same_for_joints_counted_at_run_time passes. With 0.1, the motion is so sensitive to round-off that
   /// the test fails.
   constexpr Scalar kTaskChangeWeight = Scalar(1e-3);
   /// Smallest ν with A = I. The test of kTaskChangeWeight passes with 0.01, and fails with 0.

@@ -56,9 +56,9 @@ void account(TrackerState& state, const Desired& desired, typename TrackerState:
   if (follows) update_progress(state, desired.loop.arm, q, desired.now, damped, result);
   state.lower_levels.report(result);
   report_levels(desired.loop.kinematics, desired.now.x, result);
-  const auto distances = typename TrackerState::Scalar(state.guard.near_distance_sum());
+  const auto distances = typename TrackerState::Scalar(state.bounds.near_distance_sum());
   state.lower_levels.end_tick(follows, tick.joints.qd, distances, state.correction.length());
-  if constexpr (TrackerState::kGuarded) {
+  if constexpr (TrackerState::kBounded) {
     state.progress.watch_shapes(tick.joints.qd.isZero(0), distances, state.correction.length());
   }
 }

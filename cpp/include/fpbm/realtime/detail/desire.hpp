@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "fpbm/linalg/detail/null_basis.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/realtime/detail/joint_approach.hpp"
 #include "fpbm/realtime/detail/require_stable.hpp"
@@ -38,6 +39,14 @@ void resolve(Loop& loop, const Target& reference, Result& result) noexcept {
   if (result.sigma < 0) result.sigma = least_singular_value_bound(first_rows(loop.kinematics));
 }
 
+/// Adds the null-space motion away from shapes. desired: with the rows of the task in the middle of the tick.
+template <typename TrackerState, typename Desired>
+void move_away(TrackerState& state, Desired& desired) noexcept {
+  if constexpr (TrackerState::kBounded) {
+    desired.u += null_space_motion(jacobian_in_metres(desired.loop.kinematics), state.bounds.away(state.tick.joints.q));
+  }
+}
+
 /// First step of a tick: the motion of the scheme in the middle of the tick (TickState::update_middle()), with
 /// corrected references (Correction, HeldLevel, LowerLevels). Sets the error, σ and the status of the result. If the
 /// status is a failure, the desired motion is the present motion.
@@ -66,6 +75,7 @@ template <typename Arm, typename Scheme, typename TrackerState, typename Space, 
   state.tick.reference_change = references.change();
   if (failed(result.status)) return desired;
   desired.u = state.lower_levels.rests() ? state.tick.slowed() : desired.loop.motion();
+  if (state.bounds.moves_away()) move_away(state, desired);
   return desired;
 }
 

@@ -4,7 +4,6 @@
 
 #include "fpbm/core/status.hpp"
 #include "fpbm/linalg/detail/entrywise.hpp"
-#include "fpbm/linalg/detail/null_basis.hpp"
 #include "fpbm/realtime/detail/followable_fraction.hpp"
 #include "fpbm/realtime/detail/joint_approach.hpp"
 #include "fpbm/realtime/detail/tracker_state.hpp"
@@ -12,11 +11,11 @@
 namespace fpbm {
 
 /// Sets scale, saturated joints and status of the result for a limited motion.
-template <typename Motion, typename Guard_, typename Result>
-void report_limits(const Motion& found, const Guard_& guard, bool braking, Result& result) noexcept {
+template <typename Motion, typename Bounds_, typename Result>
+void report_limits(const Motion& found, const Bounds_& bounds, bool braking, Result& result) noexcept {
   take_scale(result, found);
   result.saturated = found.joints;
-  if (found.scale < 1 && !braking) result.status = guard.is_near(found.rows) ? Status::kBlocked : Status::kSlowed;
+  if (found.scale < 1 && !braking) result.status = bounds.status(found.rows);
 }
 
 /// Motion of a recovery within the limits and the rows.
@@ -82,7 +81,7 @@ template <typename TrackerState, typename Desired, typename Rows_>
   } else if constexpr (TrackerState::kHasLevels) {
     found = limiter.stop_on_first_level(tasks, joints, u, last, rows);
   }
-  report_limits(found, state.guard, braking, result);
+  report_limits(found, state.bounds, braking, result);
   if (fraction < Scalar(1)) {
     multiply_scale(result, fraction);
     result.status = worse(result.status, Status::kSlowed);
@@ -93,22 +92,16 @@ template <typename TrackerState, typename Desired, typename Rows_>
 /// Second step of a tick: the motion within the limits and the rows that realises as much of the desired motion as
 /// possible. A desired motion that the limits and the rows admit does not change. rows: TrackerState::rows().
 template <typename TrackerState, typename Desired, typename Rows_>
-[[nodiscard]] typename TrackerState::JointVector limit(TrackerState& state, const Desired& desired, Rows_ rows,
+[[nodiscard]] typename TrackerState::JointVector limit(TrackerState& state, const Desired& desired, const Rows_& rows,
                                                        typename TrackerState::Result& result) noexcept {
-  typename TrackerState::JointVector u = desired.u;
-  if constexpr (TrackerState::kGuarded) {
-    if (state.guard.moves_away() && !failed(result.status)) {
-      u += null_space_motion(jacobian_in_metres(desired.loop.kinematics), state.guard.away());
-    }
-    state.guard.bound_speeds(state.limits(), state.tick.joints, u, rows);
-  }
+  const typename TrackerState::JointVector& u = desired.u;
   if (!state.is_brakable(state.tick.after(u))) result.status = Status::kNotFinite;
   if (state.progress.recovering() && !state.stopping && !failed(result.status)) {
     return recovery_motion(state, rows, result);
   }
   if (state.progress.stalled()) result.status = worse(result.status, Status::kStalled);
   if (!state.stopping && result.status < Status::kStalled && state.admits(rows, u)) return u;
-  return limited_motion(state, desired, std::move(u), rows, result);
+  return limited_motion(state, desired, u, rows, result);
 }
 
 /// limit() for a measured state. last: last command [rad/s²].
@@ -119,14 +112,7 @@ template <typename TrackerState, typename Limiter, typename Desired>
                                                                 typename TrackerState::Result& result) noexcept {
   const auto& measured = desired.loop.state;
   const auto& limits = limiter.limits();
-  auto rows = state.guard.rows(limits, measured);
-  if constexpr (TrackerState::kGuarded) {
-    // If the tip rotates, the direction of its velocity after the time limits.tick() differs from the direction after
-    // the time dt(). Therefore, rows are added for both times.
-    state.guard.bound_speeds(limits, measured, desired.u, rows);
-    const auto fraction = state.dt() / limits.tick();
-    if (fraction < 1) state.guard.bound_speeds(limits, measured, fraction * desired.u, rows);
-  }
+  const auto rows = state.rows(limits, measured, desired.u, state.dt() / limits.tick());
   auto tasks = jacobian_in_metres(desired.loop.kinematics);
   if constexpr (TrackerState::kHasLevels) tasks.set_first_motion(desired.loop.first);
   auto found = with_scale(tasks, last, typename TrackerState::Scalar(0));
@@ -136,7 +122,7 @@ template <typename TrackerState, typename Limiter, typename Desired>
   } else {
     found = limiter.motion(tasks, measured, desired.u, last, rows);
   }
-  report_limits(found, state.guard, braking, result);
+  report_limits(found, state.bounds, braking, result);
   return found.u;
 }
 

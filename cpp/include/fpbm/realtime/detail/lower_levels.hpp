@@ -72,7 +72,7 @@ class LowerLevels {
   }
 
   /// Call at the end of a tick. follows: whether the arm follows the references. qd: joint velocities [rad/s].
-  /// distance_sum: Guard::near_distance_sum() [m]. length: the robot's characteristic length [m].
+  /// distance_sum: Bounds::near_distance_sum() [m]. length: the robot's characteristic length [m].
   template <typename JointVector>
   void end_tick(bool follows, const JointVector& qd, Scalar distance_sum, Scalar length) noexcept {
     if (!follows) return release();

@@ -41,8 +41,8 @@ class Progress {
     recovery_.renew();
   }
 
-  /// Call before a tick of an arm with shapes near it. distance_sum: Guard::near_distance_sum() [m]. If the shapes have
-  /// moved, a stalled arm tries again.
+  /// Call before a tick of an arm with shapes near it. distance_sum: Bounds::near_distance_sum() [m]. If the shapes
+  /// have moved, a stalled arm tries again.
   void watch_shapes(bool at_rest, Scalar distance_sum, Scalar length) noexcept {
     if (stall_.stalled() && stall_.wait(at_rest, distance_sum, length)) try_again();
   }

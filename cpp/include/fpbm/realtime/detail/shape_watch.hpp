@@ -8,7 +8,7 @@ namespace fpbm {
 template <typename Scalar>
 class ShapeWatch {
  public:
-  /// Call once per tick. Returns whether the shapes have moved. distance_sum: Guard::near_distance_sum() [m]. least:
+  /// Call once per tick. Returns whether the shapes have moved. distance_sum: Bounds::near_distance_sum() [m]. least:
   /// smallest change of distance_sum that counts [m].
   [[nodiscard]] bool moved(bool at_rest, Scalar distance_sum, Scalar least) noexcept {
     if (at_rest_ && std::abs(distance_sum - distance_sum_) > least) return true;

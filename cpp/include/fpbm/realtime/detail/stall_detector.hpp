@@ -61,7 +61,7 @@ class StallDetector {
   }
 
   /// Call in each tick of a stalled arm. Returns true if shapes near the arm have moved since the arm stopped, so that
-  /// the arm should try again. distance_sum: Guard::near_distance_sum() [m].
+  /// the arm should try again. distance_sum: Bounds::near_distance_sum() [m].
   [[nodiscard]] bool wait(bool at_rest, Scalar distance_sum, Scalar length) noexcept {
     return shapes_.moved(at_rest, distance_sum, Distance::kProgress * length);
   }

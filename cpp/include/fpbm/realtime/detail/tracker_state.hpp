@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fpbm/bound/detail/unguarded.hpp"
+#include "fpbm/bound/bounds.hpp"
 #include "fpbm/core/detail/parts.hpp"
 #include "fpbm/limits/limiter.hpp"
 #include "fpbm/linalg/detail/entrywise.hpp"
@@ -15,10 +15,10 @@ namespace fpbm {
 
 /// State of a Tracker from tick to tick. A tick has four steps, which read and change this state: desire(), limit(),
 /// prove() and account() (docs/architecture.md, A tick).
-template <Level kLevel_, typename Space_, int N, typename Scalar_, typename Guard_>
+template <Level kLevel_, typename Space_, int N, typename Scalar_, typename Bounds_>
 struct TrackerState {
   static constexpr Level kLevel = kLevel_;
-  static constexpr bool kGuarded = !std::is_same_v<Guard_, Unguarded>;
+  static constexpr bool kBounded = !std::is_same_v<Bounds_, Bounds<>>;
   static constexpr bool kHasLevels = kLevelsOf<Space_> != 1;
   using Space = Space_;
   using Scalar = Scalar_;
@@ -31,11 +31,13 @@ struct TrackerState {
   /// start: state after a tick with the acceleration qdd0. continuous: bits of the continuous joints. Throws
   /// std::invalid_argument if an option is out of range.
   TrackerState(const TrackerOptions<Scalar>& options, const JointLimits& limits_, const JointState& start,
-               const JointVector& qdd0, const Guard_& guard_, JointBits continuous_)
+               const JointVector& qdd0, const Bounds_& bounds_, JointBits continuous_)
       : tick{{options.dt}, start, qdd0, filled<JointVector>(qdd0.size())},
         correction(options),
         limiter(limits_, kHasLevels && options.keep_first_level ? kReserve : Scalar(0), options.recover_start),
-        guard(guard_),
+        bounds(bounds_),
+        stop(Stop<kLevel, N, Scalar>::at_rest(qdd0.size())),
+        acting_ticks(kBounded ? StopPlan<kLevel, N, Scalar>::acting_ticks(limits_) : Scalar(1)),
         progress(options, start.q, continuous_),
         lower_levels(options.stall_time, options.dt),
         continuous(continuous_),
@@ -45,7 +47,9 @@ struct TrackerState {
   TickState<kLevel, Space, N, Scalar> tick;
   Correction<kLevel, Space, Scalar> correction;
   Limiter<kLevel, N, Scalar> limiter;
-  Guard_ guard;
+  Bounds_ bounds;
+  Stop<kLevel, N, Scalar> stop;  ///< The planned stop, with the tick before the stop. Set if there are bounds.
+  Scalar acting_ticks;           ///< StopPlan::acting_ticks().
   Progress<Space, N, Scalar> progress;
   typename LowerLevelsOf<Space, Scalar>::type lower_levels;
   std::conditional_t<kHasLevels, HeldLevel<Space, Scalar>, NoHeldLevel> held_level;
@@ -85,8 +89,30 @@ struct TrackerState {
            is_finite(entrywise(joints.qd, [&](Eigen::Index i) { return joints.qd.coeff(i) * rate; }));
   }
 
-  /// Rows of the guard at the start of the tick.
-  [[nodiscard]] auto rows() noexcept { return guard.rows(limits(), tick.joints); }
+  /// Throws std::invalid_argument if a start after a tick with the acceleration `last` violates a bound, or if the arm
+  /// cannot stop within the bounds.
+  void require_bounds(const JointState& start, const JointVector& last) {
+    bounds.require(start.q);
+    if (bounds.empty()) return;
+    for (Eigen::Index i = 0; i < start.q.size() && !limits().is_viable(start, last); ++i) {
+      // Only from rest does the stop of a joint outside its range have the bounds that the stopping trajectory assumes.
+      if (start.qd(i) == Scalar(0) && last(i) == Scalar(0)) continue;
+      validation::fail(validation::element("qd0", i), start.qd(i),
+                       "0 before a start outside the limits with bounds: stop the arm first");
+    }
+    stop = Stop<kLevel, N, Scalar>::after(limits(), start, start, last);
+    if (!bounds.accepts(start, stop)) {
+      validation::reject("qd0", ": is too fast: must be slow enough for the arm to stop within all bounds");
+    }
+  }
+
+  /// Rows of the bounds for a tick with the desired motion u.
+  [[nodiscard]] auto rows(const JointVector& u) noexcept { return rows(limits(), tick.joints, u); }
+  /// Rows for a motion from `joints` within `joint_limits`. The motion lasts at least the given fraction of a tick.
+  [[nodiscard]] auto rows(const JointLimits& joint_limits, const JointState& joints, const JointVector& u,
+                          Scalar least_fraction = Scalar(1)) noexcept {
+    return bounds.rows(NextMotion<kLevel, N, Scalar>{joint_limits, joints, u, stop, acting_ticks, least_fraction});
+  }
   /// Whether the limits and the rows admit a tick with the motion u.
   template <typename Rows>
   [[nodiscard]] bool admits(const Rows& rows, const JointVector& u) const noexcept {

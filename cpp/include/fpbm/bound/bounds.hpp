@@ -1,0 +1,186 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "fpbm/bound/detail/next_motion.hpp"
+#include "fpbm/core/status.hpp"
+#include "fpbm/limits/detail/rows.hpp"
+
+namespace fpbm {
+namespace bound_detail {
+
+/// Whether a bound has the functions of Clearance for shapes: near_distance_sum(), moves_away() and away(q).
+template <typename Bound, typename = void>
+inline constexpr bool kKnowsShapes = false;
+template <typename Bound>
+inline constexpr bool kKnowsShapes<Bound, std::void_t<decltype(std::declval<const Bound&>().moves_away())>> = true;
+
+template <typename Bound>
+[[nodiscard]] auto near_distance_sum([[maybe_unused]] const Bound& bound) noexcept {
+  if constexpr (kKnowsShapes<Bound>) {
+    return bound.near_distance_sum();
+  } else {
+    return 0.0;
+  }
+}
+template <typename Bound>
+[[nodiscard]] bool moves_away([[maybe_unused]] const Bound& bound) noexcept {
+  if constexpr (kKnowsShapes<Bound>) {
+    return bound.moves_away();
+  } else {
+    return false;
+  }
+}
+
+/// Whether Bound has a member, by the name of the member.
+template <typename Bound, typename = void>
+inline constexpr bool kHasRows = false;
+template <typename Bound>
+inline constexpr bool kHasRows<Bound, std::enable_if_t<(Bound::kRows >= 0)>> = true;
+template <typename Bound, typename = void>
+inline constexpr bool kHasStatus = false;
+template <typename Bound>
+inline constexpr bool
+    kHasStatus<Bound, std::enable_if_t<std::is_same_v<std::decay_t<decltype(Bound::kStatus)>, Status>>> = true;
+template <typename Bound, typename = void>
+inline constexpr bool kHasEmpty = false;
+template <typename Bound>
+inline constexpr bool kHasEmpty<Bound, std::void_t<decltype(std::declval<const Bound&>().empty())>> = true;
+
+}  // namespace bound_detail
+
+/// Everything that restricts the next motion of a Tracker beyond the joint limits: Bounds(a, b, …) joins bounds, for
+/// example a Clearance, TaskBounds and SpeedBounds. Bounds<> restricts nothing.
+///
+/// A tick is executed only if all bounds accept the stopping trajectory after the tick. Otherwise the arm continues the
+/// stopping trajectory of the tick before. By induction from the start, the bounds hold at every tick. The rows leave
+/// slack for accepts(), so that the arm slides along a bound instead of stopping before the bound.
+///
+/// A bound of your own has these members (docs/architecture.md, "Add a bound"):
+///
+///   kRows                      largest number of rows
+///   kStatus                    status of a tick that the rows slow down: Status::kBlocked or Status::kSlowed
+///   empty()                    whether nothing is bounded
+///   require(q)                 throws std::invalid_argument if the posture q violates the bound
+///   rows(next, rows)           adds g·u ≤ b for the next motion (NextMotion), at most kRows rows
+///   accepts(from, stop)        whether the tick and the stop after the tick, from the state `from`, keep the bound
+///                              (Stop); true for a bound without a certificate
+///
+/// rows() and accepts() are noexcept, and rows() is called first in each tick. All state of a bound is allocated at
+/// construction.
+template <typename... Each>
+class Bounds {
+ public:
+  static_assert((bound_detail::kHasRows<Each> && ...), "a bound needs `static constexpr int kRows`");
+  static_assert((bound_detail::kHasStatus<Each> && ...), "a bound needs `static constexpr fpbm::Status kStatus`");
+  static_assert((bound_detail::kHasEmpty<Each> && ...), "a bound needs `bool empty() const noexcept`");
+  static constexpr int kRows = (0 + ... + Each::kRows);
+  static_assert(kRows <= 32, "at most 32 rows: the active rows are the bits of a std::uint32_t");
+
+  Bounds() = default;
+  template <typename First, typename... More,
+            typename = std::enable_if_t<
+                sizeof...(More) + 1 == sizeof...(Each) &&
+                std::is_same_v<std::tuple<std::decay_t<First>, std::decay_t<More>...>, std::tuple<Each...>>>>
+  explicit Bounds(First&& first, More&&... more) : each_(std::forward<First>(first), std::forward<More>(more)...) {}
+
+  /// The bound of a type, for example to move an obstacle: bounds.get<Clearance<7>>().move(…).
+  template <typename Bound>
+  [[nodiscard]] Bound& get() noexcept {
+    return std::get<Bound>(each_);
+  }
+  template <typename Bound>
+  [[nodiscard]] const Bound& get() const noexcept {
+    return std::get<Bound>(each_);
+  }
+
+  [[nodiscard]] bool empty() const noexcept {
+    return std::apply([](const auto&... bound) { return (bound.empty() && ...); }, each_);
+  }
+
+  template <typename JointVector>
+  void require(const JointVector& q) {
+    std::apply([&](auto&... bound) { (bound.require(q), ...); }, each_);
+  }
+
+  /// Rows on the next motion.
+  template <Level kLevel, int N, typename Scalar>
+  [[nodiscard]] Rows<N, kRows, Scalar> rows(const NextMotion<kLevel, N, Scalar>& next) noexcept {
+    Rows<N, kRows, Scalar> rows;
+    if constexpr (kRows > 0) {
+      rows.g.resize(next.state.q.size(), kRows);
+      std::size_t i = 0;
+      each([&](auto& bound) noexcept {
+        if (!bound.empty()) bound.rows(next, rows);
+        ends_[i++] = rows.count;
+      });
+    }
+    return rows;
+  }
+
+  /// Status of a tick that rows slow down. active: bit k is set if row k acts.
+  [[nodiscard]] Status status([[maybe_unused]] std::uint32_t active) const noexcept {
+    Status status = Status::kSlowed;
+    std::size_t i = 0;
+    each([&]([[maybe_unused]] const auto& bound) noexcept {
+      const std::uint32_t mask = below(ends_[i]) & ~(i > 0 ? below(ends_[i - 1]) : std::uint32_t(0));
+      if ((active & mask) != 0) status = worse(status, std::decay_t<decltype(bound)>::kStatus);
+      ++i;
+    });
+    return status;
+  }
+
+  template <Level kLevel, int N, typename Scalar>
+  [[nodiscard]] bool accepts(const State<N, Scalar>& from, const Stop<kLevel, N, Scalar>& stop) noexcept {
+    return std::apply([&](auto&... bound) noexcept { return ((bound.empty() || bound.accepts(from, stop)) && ...); },
+                      each_);
+  }
+
+  /// Sum of the distances to shapes that are near [m], of bounds that know shapes. While the arm is at rest, the sum
+  /// changes only if obstacles move.
+  [[nodiscard]] auto near_distance_sum() const noexcept {
+    return (0.0 + ... + bound_detail::near_distance_sum(std::get<Each>(each_)));
+  }
+  /// Whether null-space motion away from shapes is enabled.
+  [[nodiscard]] bool moves_away() const noexcept { return (bound_detail::moves_away(std::get<Each>(each_)) || ...); }
+  /// Null-space motion away from shapes in the posture q [rad/s², or rad/s at velocity level].
+  template <typename JointVector>
+  [[nodiscard]] JointVector away(const JointVector& q) noexcept {
+    auto sum = filled<JointVector>(q.size());
+    each([&](auto& bound) noexcept {
+      if constexpr (bound_detail::kKnowsShapes<std::decay_t<decltype(bound)>>) {
+        if (bound.moves_away()) sum += bound.away(q);
+      }
+    });
+    return sum;
+  }
+
+ private:
+  /// Calls f(bound) for each bound.
+  template <typename F>
+  void each(F&& f) noexcept {
+    std::apply([&](auto&... bound) noexcept { (f(bound), ...); }, each_);
+  }
+  template <typename F>
+  void each(F&& f) const noexcept {
+    std::apply([&](const auto&... bound) noexcept { (f(bound), ...); }, each_);
+  }
+
+  /// The bits below bit `end`.
+  [[nodiscard]] static std::uint32_t below(Eigen::Index end) noexcept {
+    return end < 32 ? (std::uint32_t(1) << end) - std::uint32_t(1) : ~std::uint32_t(0);
+  }
+
+  std::tuple<Each...> each_;
+  std::array<Eigen::Index, sizeof...(Each)> ends_{};  ///< Number of rows after each bound.
+};
+
+template <typename... Each>
+Bounds(Each...) -> Bounds<std::decay_t<Each>...>;
+
+}  // namespace fpbm
