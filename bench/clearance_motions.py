@@ -137,7 +137,7 @@ def motion(name: str, number: int) -> Motion | None:
     path = fp.Line(points[0], duration) if len(points) == 1 else fp.Waypoints(points, duration=duration)
     options: dict[str, Any] = {"task": str(rng.choice(["position", "pose"])), "limits": made.limits}
     scheme = schemes(made.arm.dof, rng)
-    run = fp.track(made.arm, path, scheme, q0, clearance=clearance, **options)
+    run = fp.track(made.arm, path, scheme, q0, bounds=[clearance], **options)
     assert run.clearance is not None
     check = made.meshes.among(obstacles)
     free = None

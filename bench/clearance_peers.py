@@ -84,7 +84,7 @@ def scenarios() -> list[Scenario]:
 
 
 def ours(scene: Scene, scheme: fp.Scheme, limits: fp.JointLimits, clearance: fp.Clearance | None) -> Step:
-    tracker = fp.Tracker(scene.arm, scheme, READY, limits=limits, clearance=clearance)
+    tracker = fp.Tracker(scene.arm, scheme, READY, limits=limits, bounds=[clearance] if clearance else ())
 
     def step(x: Array, xd: Array, xdd: Array) -> tuple[Array, bool]:
         tick = tracker.tick(x, xd, xdd)

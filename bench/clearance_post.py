@@ -96,7 +96,7 @@ def crossing(task: tuple[float, int, bool]) -> Crossing:
     clearance = replace(made.clearance, obstacles=[post(foot)], margin=MARGIN)
     scheme = fp.FPBM(0.6, np.ones(7), 20, 100, null_damping=2)
     # After the crossing, the tip returns.
-    options = {"clearance": clearance if guarded else None, "stall_time": math.inf}
+    options = {"bounds": [clearance] if guarded else [], "stall_time": math.inf}
     tracker = fp.Tracker(made.arm, scheme, READY, limits=made.limits, **options)
     model, target = MADE["model"], tracker.tip
     data = mujoco.MjData(model)

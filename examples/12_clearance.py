@@ -15,8 +15,8 @@ q0 = [0, -0.7854, 0, -2.3562, 0, 1.5708, 0.7854]  # [rad]
 scheme = fp.FPBM(0.6, np.ones(7), k1=10, k2=25, null_damping=2)
 line = fp.Line([0.3, 0.2, -0.4], 2.0)  # displacement [m], duration [s]
 
-for name, kept in {"no clearance": None, "kept clear": clearance}.items():
-    run = fp.track(arm, line, scheme, q0, clearance=kept, hold=1.0)
+for name, kept in {"no clearance": [], "kept clear": [clearance]}.items():
+    run = fp.track(arm, line, scheme, q0, bounds=kept, hold=1.0)
     nearest = min(clearance.nearest(arm, q).distance for q in run.q)
     error = np.linalg.norm(run.error[-1])
     print(f"{name}: nearest {nearest:.3f} m, at the end {error:.3f} m from the target: {run.status.code.name}")

@@ -56,8 +56,8 @@ def motions(clearance: fp.Clearance) -> dict[str, fp.Run]:
         ]
     )
     scheme = fp.FPBM(0.6, np.ones(7), k1=10, k2=25, null_damping=2)
-    kept = {"without a clearance": None, "with a clearance": clearance}
-    return {name: fp.track(PANDA, path, scheme, START, clearance=each, hold=0.5) for name, each in kept.items()}
+    kept = {"without a clearance": [], "with a clearance": [clearance]}
+    return {name: fp.track(PANDA, path, scheme, START, bounds=each, hold=0.5) for name, each in kept.items()}
 
 
 def outline(a: np.ndarray, b: np.ndarray, radius: float) -> np.ndarray:

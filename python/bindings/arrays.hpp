@@ -27,11 +27,15 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
                                py::cast<std::string>(py::repr(given)).substr(0, 60));
 }
 
+/// Whether an object is of a class of a module of the package.
+inline bool is_class(const py::handle& given, const char* module, const char* name) {
+  return py::isinstance(given, py::module_::import((std::string("fpbm_cpp.") + module).c_str()).attr(name));
+}
+
 /// Throws std::invalid_argument unless an argument is an object of a class of the package.
 inline void require_class(const py::handle& given, const char* module, const char* name, const std::string& argument,
                           const char* demand) {
-  const py::object type = py::module_::import((std::string("fpbm_cpp.") + module).c_str()).attr(name);
-  if (!py::isinstance(given, type)) reject_type(given, argument, demand);
+  if (!is_class(given, module, name)) reject_type(given, argument, demand);
 }
 
 /// A field of an object of the package. The class of the object may be a subclass outside the package, whose class

@@ -8,13 +8,11 @@
 #include "arrays.hpp"
 #include "clearance.hpp"
 #include "fpbm/bound/robot_capsules.hpp"
-#include "fpbm/bound/task_bounds.hpp"
 #include "read_stack.hpp"
 
 namespace fpbm::bindings {
 
-Clearance<kDynamic> clearance_of(const Model& model, const py::object& given) {
-  if (given.is_none()) return {model.tree, {}, {}, 0.0};
+Clearance<kDynamic> clearance_of(const Model& model, const py::handle& given) {
   require_class(given, "clearance", "Clearance", "clearance", "a Clearance");
   const auto name = [](const py::handle& shape) { return py::cast<std::string>(field(shape, "name")); };
   std::vector<LinkCapsule<>> capsules;
@@ -33,35 +31,59 @@ Clearance<kDynamic> clearance_of(const Model& model, const py::object& given) {
   return clearance;
 }
 
-void add_bounds(Clearance<kDynamic>& clearance, const Model& model, const py::object& bounds) {
-  if (!py::isinstance<py::iterable>(bounds)) reject_type(bounds, "bounds", "TaskBounds in a sequence");
-  for (const py::handle each : bounds) {
-    require_class(each, "task_bounds", "TaskBounds", "bounds", "TaskBounds in a sequence");
-    const py::object task = field(each, "task");
-    const auto name = py::cast<std::string>(field(task, "name"));
-    const auto number = [&](const char* key) { return py::cast<double>(field(each, key)); };
-    const auto vector = [](const py::handle& of, const char* key) { return direction(ArrayLike(field(of, key)), key); };
-    const LinkFrame<> frame = read_frame(task, model);
-    if (py::cast<const Task&>(task).kind == TaskKind::kAxis) {
-      clearance.keep(AxisBounds<>{frame, vector(task, "axis"), vector(task, "x"), number("least_angle"),
-                                  number("largest_angle"), number("velocity"), number("deceleration"), name});
+namespace {
+
+/// Adds an fpbm_cpp.TaskBounds.
+void add_task_bounds(TaskBounds<kDynamic>& walls, SpeedBounds<kDynamic>& speeds, const Model& model,
+                     const py::handle& given) {
+  const py::object task = field(given, "task");
+  const auto name = py::cast<std::string>(field(task, "name"));
+  const auto number = [&](const char* key) { return py::cast<double>(field(given, key)); };
+  const auto vector = [](const py::handle& of, const char* key) { return direction(ArrayLike(field(of, key)), key); };
+  SpeedBound<> speed{read_frame(task, model), number("velocity")};
+  if (py::cast<const Task&>(task).kind == TaskKind::kAxis) {
+    speed.axis = vector(task, "axis");
+    walls.keep(AxisBounds<>{speed.frame, *speed.axis, vector(task, "x"), number("least_angle"), number("largest_angle"),
+                            number("deceleration"), name});
+  } else {
+    speed.rows = py::cast<std::array<bool, 3>>(field(given, "selected"));
+    const auto limit = [&](const char* key) {
+      Vector<3> values;
+      for (std::size_t i = 0; i < 3; ++i) {
+        values(static_cast<Eigen::Index>(i)) = py::cast<double>(field(given, key)[py::int_(i)]);
+      }
+      return values;
+    };
+    walls.keep(
+        PositionBounds<>{speed.frame, limit("lower_corner"), limit("upper_corner"), number("deceleration"), name});
+  }
+  speeds.keep(speed);
+}
+
+}  // namespace
+
+AnyBounds bounds_of(const Model& model, const py::object& given) {
+  constexpr const char* kDemand = "a Clearance and TaskBounds in a sequence";
+  if (!py::isinstance<py::iterable>(given)) reject_type(given, "bounds", kDemand);
+  Clearance<kDynamic> clearance(model.tree, {}, {}, 0.0);
+  TaskBounds<kDynamic> walls(model.tree);
+  SpeedBounds<kDynamic> speeds(model.tree);
+  bool is_clear = false;
+  for (const py::handle each : given) {
+    if (is_class(each, "clearance", "Clearance")) {
+      if (is_clear) validation::reject("bounds", " has two Clearances: must have at most one, with all shapes");
+      clearance = clearance_of(model, each);
+      is_clear = true;
     } else {
-      const auto selected = py::cast<std::array<bool, 3>>(field(each, "selected"));
-      const auto limit = [&](const char* key) {
-        Vector<3> values;
-        for (std::size_t i = 0; i < 3; ++i) {
-          values(static_cast<Eigen::Index>(i)) = py::cast<double>(field(each, key)[py::int_(i)]);
-        }
-        return values;
-      };
-      clearance.keep(PositionBounds<>{frame, limit("lower_corner"), limit("upper_corner"), number("velocity"),
-                                      number("deceleration"), selected, name});
+      require_class(each, "task_bounds", "TaskBounds", "bounds", kDemand);
+      add_task_bounds(walls, speeds, model, each);
     }
   }
+  return AnyBounds(clearance, walls, speeds);
 }
 
 std::optional<PyNearest> nearest_at(const Clearance<kDynamic>& clearance, const JointVector& q) {
-  if (clearance.shape_pairs() == 0) return std::nullopt;
+  if (clearance.empty()) return std::nullopt;
   auto placed = clearance.placement();
   const ShapePair& pair = clearance.pairs()[clearance.nearest_pair(q, placed).first];
   const auto found = clearance.nearest_of(placed, pair);

@@ -111,16 +111,15 @@ class PyTracker {
  public:
   PyTracker(const Model& model, const Scheme& scheme, const ArrayLike& q0, const OptionalArray& qd0,
             const OptionalArray& qdd0, const std::string& task, const py::object& stack, const py::object& limits,
-            const TrackerOptions<>& options, const py::object& clearance, const py::object& task_bounds)
+            const TrackerOptions<>& options, const py::object& given)
       : dof_(model.dof()), dt_(options.dt) {
     State<kDynamic> start{joint_vector(q0, "q0", dof_), JointVector::Zero(dof_)};
     if (qd0) start.qd = joint_vector(*qd0, "qd0", dof_);
     const JointVector before = qdd0 ? joint_vector(*qdd0, "qdd0", dof_) : JointVector::Zero(dof_);
     const JointLimits<kDynamic> bounds = limits_of(model, limits);
-    Clearance<kDynamic> shapes = clearance_of(model, clearance);
-    add_bounds(shapes, model, task_bounds);
+    const AnyBounds further = bounds_of(model, given);
     if (!stack.is_none()) {
-      any_ = std::make_unique<StackLoop>(stack, scheme, model, start, options, bounds, before, shapes);
+      any_ = std::make_unique<StackLoop>(stack, scheme, model, start, options, bounds, before, further);
       return;
     }
     const auto* arm = dynamic_cast<const Arm*>(&model);
@@ -128,7 +127,7 @@ class PyTracker {
     any_ = arm->visit(task, [&](const auto& any, auto space) {
       using Space = decltype(space);
       require_enough_joints<Space>(dof_);
-      return Any(make_tracker<Space>(scheme, {any, start, options, bounds, before, shapes}));
+      return Any(make_tracker<Space>(scheme, {any, start, options, bounds, before, further}));
     });
   }
 
@@ -335,12 +334,10 @@ keep_first_level : bool
 measured_delay : int
     Largest age of the states for resolve_measured [ticks]: the time from the measurement to the start of the tick in
     which the robot realises the result. 0: exact present states, as in a simulation.
-clearance : Clearance, optional
-    Self-collision and obstacles that the arm avoids: while obstacles are at rest, no checked pair comes closer than the
-    margin, for every reference. A tick is executed only if the arm can then stop before all shapes; otherwise the arm
-    brakes immediately.
-bounds : sequence of TaskBounds
-    Bounds on task coordinates: walls for points of links, cones for axes, speeds.
+bounds : sequence of Clearance and TaskBounds
+    A Clearance: self-collision and obstacles that the arm avoids. While obstacles are at rest, no checked pair comes
+    closer than the margin, for every reference. TaskBounds: walls for points of links, cones for axes, speeds. A tick is
+    executed only if the arm can then stop within all bounds; otherwise the arm brakes immediately.
 recover_start : bool
     Whether the start may be outside the joints' ranges, or too fast for their bounds. The joints then return within the
     bounds on velocity, acceleration and jerk, and the other joints follow the task.
@@ -348,14 +345,13 @@ recover_start : bool
 Raises
 ------
 ParameterError
-    If an argument is out of range, a limit is missing, or the start violates a limit, a bound or the clearance; with
-    recover_start, the start may violate limits.)")
+    If an argument is out of range, a limit is missing, or the start violates a limit or a bound; with recover_start,
+    the start may violate limits.)")
       .def(py::init([](const Given<Model>& arm, const Given<Scheme>& scheme, const ArrayLike& q0,
                        const OptionalArray& qd0, const OptionalArray& qdd0, const std::string& task,
                        const py::object& stack, double dt, const py::object& limits, double error_bound, double gain,
                        double bound, double stall_time, double radius, double brake, double null_damping, bool recovery,
-                       bool keep_first_level, int measured_delay, const py::object& clearance,
-                       const py::object& task_bounds, bool recover_start) {
+                       bool keep_first_level, int measured_delay, const py::object& bounds, bool recover_start) {
              const SingularDamping<> singular(radius, brake);
              TrackerOptions<> options{dt, error_bound, gain, bound, stall_time, singular, null_damping};
              options.recovery = recovery;
@@ -363,7 +359,7 @@ ParameterError
              options.measured_delay = measured_delay;
              options.recover_start = recover_start;
              return PyTracker(arm.as("arm", "an arm or a Robot"), scheme.as("scheme", "a scheme"), q0, qd0, qdd0, task,
-                              stack, limits, options, clearance, task_bounds);
+                              stack, limits, options, bounds);
            }),
            py::arg("arm"), py::arg("scheme"), py::arg("q0"), py::kw_only(), py::arg("qd0") = none,
            py::arg("qdd0") = none, py::arg("task") = "position", py::arg("stack") = none, py::arg("dt") = 1e-3,
@@ -373,8 +369,8 @@ ParameterError
            py::arg("singular_brake") = SingularDamping<>().brake(),
            py::arg("null_damping") = TrackerOptions<>().null_damping, py::arg("recovery") = TrackerOptions<>().recovery,
            py::arg("keep_first_level") = TrackerOptions<>().keep_first_level,
-           py::arg("measured_delay") = TrackerOptions<>().measured_delay, py::arg("clearance") = none,
-           py::arg("bounds") = py::tuple(), py::arg("recover_start") = TrackerOptions<>().recover_start)
+           py::arg("measured_delay") = TrackerOptions<>().measured_delay, py::arg("bounds") = py::tuple(),
+           py::arg("recover_start") = TrackerOptions<>().recover_start)
       .def("tick", py::overload_cast<PyFollower&>(&PyTracker::tick), py::arg("follower"),
            "One tick along a path. The clock of the path advances by one tick.")
       .def("tick", py::overload_cast<PyTargetFilter&>(&PyTracker::tick), py::arg("filter"),

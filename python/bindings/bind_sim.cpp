@@ -41,15 +41,15 @@ std::optional<LimitOptions> limit_options_of(const py::object& given, const Mode
   if (given.is_none()) return std::nullopt;
   const auto number = [&](const char* name) { return py::cast<double>(given.attr(name)); };
   const py::object limits = given.attr("limits");
-  const py::object clearance = given.attr("clearance");
   LimitOptions limit_options{
       limits_of(model, limits),
       {1e-3, number("error_bound"), number("integral_gain"), number("integral_bound"), number("stall_time"),
        SingularDamping<>(number("singular_radius"), number("singular_brake")), number("null_damping")},
-      clearance_of(model, clearance),
-      !clearance.is_none()};
+      bounds_of(model, given.attr("bounds"))};
+  for (const py::handle each : given.attr("bounds")) {
+    limit_options.keeps_clear = limit_options.keeps_clear || is_class(each, "clearance", "Clearance");
+  }
   limit_options.options.recover_start = py::cast<bool>(given.attr("recover_start"));
-  add_bounds(limit_options.clearance, model, given.attr("bounds"));
   return limit_options;
 }
 

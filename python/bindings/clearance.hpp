@@ -6,7 +6,7 @@
 #include <string>
 
 #include "arm.hpp"
-#include "fpbm/bound/clearance.hpp"
+#include "bounds.hpp"
 
 namespace fpbm::bindings {
 
@@ -23,12 +23,13 @@ struct PyNearest {
   Matrix<2, 3> points;
 };
 
-/// The clearance of an arm from an fpbm_cpp.Clearance or None. Throws std::invalid_argument if the clearance does not
-/// fit the arm.
-Clearance<kDynamic> clearance_of(const Model& model, const pybind11::object& given);
+/// The bounds of an arm from a sequence of fpbm_cpp.Clearance, at most one, and fpbm_cpp.TaskBounds. Throws
+/// std::invalid_argument if a bound does not fit the arm.
+AnyBounds bounds_of(const Model& model, const pybind11::object& given);
 
-/// Adds bounds, a sequence of fpbm_cpp.TaskBounds. Throws std::invalid_argument if a bound does not fit the arm.
-void add_bounds(Clearance<kDynamic>& clearance, const Model& model, const pybind11::object& bounds);
+/// The clearance of an arm from an fpbm_cpp.Clearance. Throws std::invalid_argument if the clearance does not fit the
+/// arm.
+Clearance<kDynamic> clearance_of(const Model& model, const pybind11::handle& given);
 
 /// The nearest checked pair of shapes in a posture; none if no pair is checked.
 std::optional<PyNearest> nearest_at(const Clearance<kDynamic>& clearance, const JointVector& q);

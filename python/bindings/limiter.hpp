@@ -3,7 +3,7 @@
 #include <variant>
 
 #include "arm.hpp"
-#include "fpbm/bound/guard.hpp"
+#include "bounds.hpp"
 #include "fpbm/limits/detail/rows.hpp"
 #include "fpbm/limits/limiter.hpp"
 
@@ -12,9 +12,9 @@ namespace fpbm::bindings {
 /// fpbm::Limiter at acceleration level or at velocity level.
 using AnyLimiter = std::variant<Limiter<Level::kAcceleration, kDynamic>, Limiter<Level::kVelocity, kDynamic>>;
 
-/// Largest number of further bounds on motions, equal to the number of a guard, so that trackers and limiters share
-/// compiled code.
-inline constexpr int kLimiterRows = Guard<Level::kAcceleration, kDynamic>::kRows;
+/// Largest number of further bounds on motions, equal to the number of the bounds of a tracker, so that trackers and
+/// limiters share compiled code.
+inline constexpr int kLimiterRows = AnyBounds::kRows;
 using LimiterRows = Rows<kDynamic, kLimiterRows>;
 
 /// Limiter::motion() and Limiter::brake(). Compiled once, in the unit of the trackers.

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "bounds.hpp"
 #include "fpbm/any/detail/any_path.hpp"
-#include "fpbm/bound/clearance.hpp"
 #include "fpbm/realtime/tick.hpp"
 #include "fpbm/simulate/rollout.hpp"
 #include "lane_tracker.hpp"
@@ -15,7 +15,7 @@ namespace fpbm::bindings {
 struct LimitOptions {
   JointLimits<kDynamic> limits;
   TrackerOptions<> options;
-  Clearance<kDynamic> clearance;
+  AnyBounds bounds;
   bool keeps_clear = false;  ///< Whether a clearance was given.
 };
 
@@ -32,7 +32,7 @@ struct Motion {
   /// rollout() of the motion. Throws std::invalid_argument if scheme or start do not fit the arm.
   RolloutResult<kDynamic> simulate(const Output<Space>& output) const;
 
-  /// fpbm::track() of the motion. Throws std::invalid_argument if scheme, start, limits, options or clearance do not
+  /// fpbm::track() of the motion. Throws std::invalid_argument if scheme, start, limits, options or bounds do not
   /// fit.
   RolloutResult<kDynamic> track(const LimitOptions& limit_options, const Output<Space>& output) const;
 

@@ -15,8 +15,8 @@ namespace fpbm::bindings {
 
 StackLoop::StackLoop(const py::object& stack, const Scheme& scheme, const Model& model, const State<kDynamic>& start,
                      const TrackerOptions<>& options, const JointLimits<kDynamic>& limits, const JointVector& qdd0,
-                     const Clearance<kDynamic>& clearance)
-    : dt_(options.dt), motion_(read_stack(stack, model), scheme, start, options, limits, qdd0, clearance) {
+                     const AnyBounds& bounds)
+    : dt_(options.dt), motion_(read_stack(stack, model), scheme, start, options, limits, qdd0, bounds) {
   auto parts = std::make_shared<Parts>();
   for (const StackTask& task : motion_.plan().tasks) parts->emplace_back(task.name, task.size);
   parts_ = std::move(parts);

@@ -10,6 +10,7 @@
 #include <pybind11/typing.h>
 
 #include "arrays.hpp"
+#include "bounds.hpp"
 #include "path.hpp"
 #include "stack_motion.hpp"
 
@@ -32,7 +33,7 @@ class StackLoop {
   /// stack: an fpbm_cpp.Stack. Throws std::invalid_argument if a task does not fit the arm, and as fpbm::Tracker.
   StackLoop(const py::object& stack, const Scheme& scheme, const Model& model, const State<kDynamic>& start,
             const TrackerOptions<>& options, const JointLimits<kDynamic>& limits, const JointVector& qdd0,
-            const Clearance<kDynamic>& clearance);
+            const AnyBounds& bounds);
 
   /// One tick toward references: a dictionary of arguments of Tracker.tick(), by the names of the tasks. A task that is
   /// not in the dictionary keeps its last target, at rest. If a reference is invalid, throws std::invalid_argument

@@ -9,11 +9,10 @@ namespace fpbm::bindings {
 
 StackMotion::StackMotion(const StackPlan& plan, const Scheme& scheme, const State<kDynamic>& start,
                          const TrackerOptions<>& options, const JointLimits<kDynamic>& limits, const JointVector& qdd0,
-                         const Clearance<kDynamic>& clearance)
+                         const AnyBounds& bounds)
     : plan_(plan),
       dt_(options.dt),
-      tracker_(
-          make_stack_tracker(scheme, {plan_.tree, plan_.at(scheme.level), start, options, limits, qdd0, clearance})),
+      tracker_(make_stack_tracker(scheme, {plan_.tree, plan_.at(scheme.level), start, options, limits, qdd0, bounds})),
       held_(Reference<Space>::hold(tracker_->tip())) {
   for (std::size_t i = 0; i < plan_.tasks.size(); ++i) {
     if (plan_.targets[i]) plan_.tasks[i].put(*plan_.targets[i], held_);

@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "bounds.hpp"
 #include "stack_path.hpp"
 #include "stack_tracker.hpp"
 #include "tracker.hpp"
@@ -25,7 +26,7 @@ class StackMotion {
   /// Throws std::invalid_argument as fpbm::Tracker does.
   StackMotion(const StackPlan& plan, const Scheme& scheme, const State<kDynamic>& start,
               const TrackerOptions<>& options, const JointLimits<kDynamic>& limits, const JointVector& qdd0,
-              const Clearance<kDynamic>& clearance);
+              const AnyBounds& bounds);
 
   /// Sets the targets of the given tasks; all other tasks keep their last target, at rest.
   void aim(const Targets& targets) noexcept;

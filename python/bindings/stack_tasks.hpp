@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fpbm/any/any_stack.hpp"
-#include "fpbm/core/level.hpp"
+#include "fpbm/core/types.hpp"
 #include "fpbm/path/reference.hpp"
 #include "model.hpp"
 

@@ -3,7 +3,6 @@
 #include <stdexcept>
 #include <type_traits>
 
-#include "fpbm/bound/guard.hpp"
 #include "fpbm/realtime/stack_tracker.hpp"
 
 namespace fpbm::bindings {
@@ -13,13 +12,11 @@ namespace {
 template <typename Scheme_>
 class StackTrackerOf final : public StackTracker {
   static constexpr Level kLevel = Scheme_::kLevel;
-  using TrackerGuard = Guard<kLevel, kDynamic>;
 
  public:
   StackTrackerOf(const Scheme_& scheme, const StackStart& from)
-      : tracker_(stack_tracker<TrackerGuard>(Robot<kDynamic>(from.tree), from.stack, scheme, from.start, from.options,
-                                             Limits<kLevel, kDynamic>(from.limits, from.options.dt), from.qdd0,
-                                             TrackerGuard(from.clearance))) {}
+      : tracker_(stack_tracker(Robot<kDynamic>(from.tree), from.stack, scheme, from.start, from.options,
+                               Limits<kLevel, kDynamic>(from.limits, from.options.dt), from.qdd0, from.bounds)) {}
 
   Result advance(const TickReferences<Space>& references) noexcept override { return tracker_.advance(references); }
   [[nodiscard]] Result resolve_measured(const State<kDynamic>& measured, const Reference<Space>& reference) override {
@@ -38,10 +35,12 @@ class StackTrackerOf final : public StackTracker {
   [[nodiscard]] const State<kDynamic>& state() const noexcept override { return tracker_.state(); }
   [[nodiscard]] const JointVector& acceleration() const noexcept override { return tracker_.acceleration(); }
   [[nodiscard]] Point tip() const noexcept override { return tracker_.tip(); }
-  [[nodiscard]] Clearance<kDynamic>& clearance() noexcept override { return tracker_.guard().clearance(); }
+  [[nodiscard]] Clearance<kDynamic>& clearance() noexcept override {
+    return tracker_.bounds().template get<Clearance<kDynamic>>();
+  }
 
  private:
-  Tracker<RobotTasks<Robot<kDynamic>, AnyStack>, Space, ByLevels<Scheme_, AnyStack>, TrackerGuard> tracker_;
+  Tracker<RobotTasks<Robot<kDynamic>, AnyStack>, Space, ByLevels<Scheme_, AnyStack>, AnyBounds> tracker_;
 };
 
 /// Calls f with the scheme as a type of the library, for joints with the given limits.

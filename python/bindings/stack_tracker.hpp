@@ -4,8 +4,8 @@
 #include <functional>
 #include <memory>
 
+#include "bounds.hpp"
 #include "fpbm/any/any_stack.hpp"
-#include "fpbm/bound/clearance.hpp"
 #include "fpbm/realtime/detail/stack_tick.hpp"
 #include "fpbm/realtime/detail/tick_references.hpp"
 #include "fpbm/simulate/rollout.hpp"
@@ -14,7 +14,7 @@
 
 namespace fpbm::bindings {
 
-/// fpbm::stack_tracker() for any robot, tasks, scheme and clearance.
+/// fpbm::stack_tracker() for any robot, tasks, scheme and bounds.
 class StackTracker {
  public:
   using Space = AnyStack::Space;
@@ -49,7 +49,7 @@ struct StackStart {
   const TrackerOptions<>& options;
   const JointLimits<kDynamic>& limits;
   const JointVector& qdd0;
-  const Clearance<kDynamic>& clearance;
+  const AnyBounds& bounds;
 };
 
 /// The tracker. Throws std::invalid_argument as fpbm::stack_tracker() does, and if an objective of the scheme needs

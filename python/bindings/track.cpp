@@ -26,15 +26,15 @@ template <typename Space>
 std::unique_ptr<AnyTracker<Space>> tracker_of(const Motion<Space>& motion, const LimitOptions& limit_options) {
   return make_tracker<Space>(motion.scheme,
                              {*motion.arm, motion.start, options_of(motion, limit_options), limit_options.limits,
-                              JointVector::Zero(motion.start.q.size()), limit_options.clearance});
+                              JointVector::Zero(motion.start.q.size()), limit_options.bounds});
 }
 
 template <typename Space>
 StackMotion stack_motion_of(const Motion<Space>& motion, const LimitOptions& limit_options) {
-  return {motion.stack->plan,     motion.scheme,
-          motion.start,           options_of(motion, limit_options),
-          limit_options.limits,   JointVector::Zero(motion.start.q.size()),
-          limit_options.clearance};
+  return {motion.stack->plan,   motion.scheme,
+          motion.start,         options_of(motion, limit_options),
+          limit_options.limits, JointVector::Zero(motion.start.q.size()),
+          limit_options.bounds};
 }
 
 /// A frame in space as a point of Space.

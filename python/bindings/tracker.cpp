@@ -2,13 +2,12 @@
 
 #include <stdexcept>
 
-#include "fpbm/bound/guard.hpp"
 #include "fpbm/realtime/tracker.hpp"
 
 namespace fpbm::bindings {
 namespace {
 
-/// AnyTracker at one level. An empty clearance takes almost no time, so trackers without a guard need no separate code.
+/// AnyTracker at one level. Empty bounds take almost no time, so trackers without bounds need no separate code.
 template <Level kLevel, typename Space>
 class TrackerAt final : public AnyTracker<Space> {
  public:
@@ -17,8 +16,7 @@ class TrackerAt final : public AnyTracker<Space> {
 
   TrackerAt(const AnyScheme<kLevel, Space>& scheme, const TrackerStart<Space>& from)
       : tracker_(from.arm, Space{}, scheme, from.start, from.options,
-                 Limits<kLevel, kDynamic>(from.limits, from.options.dt), from.qdd0,
-                 Guard<kLevel, kDynamic>(from.clearance)) {}
+                 Limits<kLevel, kDynamic>(from.limits, from.options.dt), from.qdd0, from.bounds) {}
 
   Result tick(const Reference<Space>& reference) noexcept override { return tracker_.tick(reference); }
   Result tick(AnyFollower<Space>& follower) noexcept override { return tracker_.tick(follower); }
@@ -41,7 +39,9 @@ class TrackerAt final : public AnyTracker<Space> {
     return tracker_.acceleration_change();
   }
   [[nodiscard]] Point tip() const noexcept override { return tracker_.tip(); }
-  [[nodiscard]] Clearance<kDynamic>& clearance() noexcept override { return tracker_.guard().clearance(); }
+  [[nodiscard]] Clearance<kDynamic>& clearance() noexcept override {
+    return tracker_.bounds().template get<Clearance<kDynamic>>();
+  }
 
   bool begin(const Vector<Space::kRows>& error, double length) noexcept override {
     return tracker_.begin(error, length);
@@ -58,7 +58,7 @@ class TrackerAt final : public AnyTracker<Space> {
   }
 
  private:
-  Tracker<AnyArmFor<Space>, Space, AnyScheme<kLevel, Space>, Guard<kLevel, kDynamic>> tracker_;
+  Tracker<AnyArmFor<Space>, Space, AnyScheme<kLevel, Space>, AnyBounds> tracker_;
 };
 
 }  // namespace

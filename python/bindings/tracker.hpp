@@ -2,8 +2,8 @@
 
 #include <memory>
 
+#include "bounds.hpp"
 #include "fpbm/any/detail/any_path.hpp"
-#include "fpbm/bound/clearance.hpp"
 #include "fpbm/path/path_follower.hpp"
 #include "fpbm/realtime/detail/tick_references.hpp"
 #include "fpbm/realtime/tick.hpp"
@@ -15,7 +15,7 @@ namespace fpbm::bindings {
 template <typename Space>
 using AnyFollower = PathFollower<AnyPath<Space>>;
 
-/// fpbm::Tracker of a task in Space, for any arm, scheme and clearance.
+/// fpbm::Tracker of a task in Space, for any arm, scheme and bounds.
 template <typename Space>
 class AnyTracker {
  public:
@@ -60,10 +60,10 @@ struct TrackerStart {
   const TrackerOptions<>& options;
   const JointLimits<kDynamic>& limits;
   const JointVector& qdd0;
-  const Clearance<kDynamic>& clearance;
+  const AnyBounds& bounds;
 };
 
-/// The tracker. Throws std::invalid_argument if scheme, start, options, limits or clearance do not fit, as
+/// The tracker. Throws std::invalid_argument if scheme, start, options, limits or bounds do not fit, as
 /// fpbm::Tracker does. Compiled once, in tracker.cpp.
 template <typename Space>
 std::unique_ptr<AnyTracker<Space>> make_tracker(const Scheme& scheme, const TrackerStart<Space>& from);

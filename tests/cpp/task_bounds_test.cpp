@@ -5,8 +5,6 @@
 #include <cmath>
 #include <string>
 
-#include "fpbm/bound/axis_bounds.hpp"
-#include "fpbm/bound/position_bounds.hpp"
 #include "fpbm/bound/speed_bounds.hpp"
 #include "fpbm/realtime/tracker.hpp"
 #include "support/arms.hpp"

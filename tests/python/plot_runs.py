@@ -50,7 +50,7 @@ def a_run_within_limits() -> fp.Run:
     scale = np.where(slowed, 0.25, 1.0)
     clearance = fp.Clearance([fp.Capsule(4, [1, 0, 0], [1, 0, 0], 0.0)], [fp.HalfSpace([0, 1, 0], 0.0)])
     distances = run.x[:, 1] - run.x[:, 1].min() + clearance.margin
-    options = {**run.options, "limits": limits, "clearance": clearance}
+    options = {**run.options, "limits": limits, "bounds": (clearance,)}
     return replace(run, scale=scale, saturated=saturated, clearance=distances, options=options)
 
 

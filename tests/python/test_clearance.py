@@ -173,7 +173,7 @@ def test_pairs_that_overlap_in_every_posture_are_left_out() -> None:
     assert thick.excluded_pairs(PANDA) == [("elbow", "base")]
     assert thick.pairs(PANDA) == []
     assert thick.nearest(PANDA, READY) is None
-    tracker = fp.Tracker(PANDA, fp.MAN(), READY, clearance=thick)
+    tracker = fp.Tracker(PANDA, fp.MAN(), READY, bounds=[thick])
     assert tracker.tick(tracker.tip).nearest is None
 
 
@@ -210,7 +210,7 @@ THROUGH = fp.Line([0.1, 0.2, -0.8], 2.0)
 @pytest.mark.parametrize("scheme", SCHEMES, ids=["velocity", "acceleration"])
 @pytest.mark.parametrize("task", ["position", "pose"])
 def test_a_reference_through_a_table_stops_at_the_margin(scheme: fp.Scheme, task: str) -> None:
-    run = fp.track(PANDA, THROUGH, scheme, READY, task=task, clearance=CLEARANCE, hold=0.5)
+    run = fp.track(PANDA, THROUGH, scheme, READY, task=task, bounds=[CLEARANCE], hold=0.5)
     assert run.clearance is not None
     assert run.status.code in (fp.Status.BLOCKED, fp.Status.STALLED)
     assert run.clearance.shape == run.t.shape
@@ -234,7 +234,7 @@ def test_a_planar_arm_stops_before_a_post() -> None:
     clearance = fp.Clearance(LINKS, [post])
     limits = fp.JointLimits(lower=[-3] * 3, upper=[3] * 3, velocity=[2] * 3, acceleration=[10] * 3, jerk=[500] * 3)
     run = fp.track(
-        PLANAR, fp.Line([-0.5, 0.8], 1.5), fp.MAN(), [0, 0.3, 0.3], limits=limits, clearance=clearance, hold=1.0
+        PLANAR, fp.Line([-0.5, 0.8], 1.5), fp.MAN(), [0, 0.3, 0.3], limits=limits, bounds=[clearance], hold=1.0
     )
     assert run.clearance is not None
     assert clearance.margin - 1e-9 <= run.clearance.min() <= 2 * clearance.margin
@@ -257,7 +257,7 @@ def test_the_tip_keeps_its_bound_on_speed(scheme: fp.Scheme) -> None:
 
 
 def test_distances_of_a_run_equal_those_of_its_samples() -> None:
-    run = fp.track(PANDA, THROUGH, SCHEMES[1], READY, clearance=CLEARANCE)
+    run = fp.track(PANDA, THROUGH, SCHEMES[1], READY, bounds=[CLEARANCE])
     assert run.clearance is not None
     nearest = [CLEARANCE.nearest(PANDA, q) for q in run.q]
     assert [each.distance for each in nearest if each is not None] == run.clearance.tolist()
@@ -267,14 +267,14 @@ def test_distances_of_a_run_equal_those_of_its_samples() -> None:
 def test_a_clearance_without_pairs_changes_nothing(scheme: fp.Scheme) -> None:
     nothing = fp.Clearance(CAPSULES[:2])
     assert nothing.pairs(PANDA) == []
-    free, same = (fp.track(PANDA, THROUGH, scheme, READY, clearance=each) for each in (None, nothing))
+    free, same = (fp.track(PANDA, THROUGH, scheme, READY, bounds=each) for each in ((), [nothing]))
     assert free.q.tobytes() == same.q.tobytes()
     assert free.qdd.tobytes() == same.qdd.tobytes()
     assert np.all(np.isposinf(same.clearance))
 
 
 def test_a_tick_has_the_nearest_pair_at_its_start() -> None:
-    tracker = fp.Tracker(PANDA, SCHEMES[1], READY, clearance=CLEARANCE)
+    tracker = fp.Tracker(PANDA, SCHEMES[1], READY, bounds=[CLEARANCE])
     follower = tracker.follow(THROUGH)
     for _ in range(1500):
         expected = CLEARANCE.nearest(PANDA, tracker.q)
@@ -284,12 +284,12 @@ def test_a_tick_has_the_nearest_pair_at_its_start() -> None:
     assert repr(tick.nearest) == f"<Nearest: hand and table, {tick.nearest.distance:.6g} m apart>"
     expected = CLEARANCE.nearest(PANDA, READY)
     assert repr(tracker.resolve_measured(READY, np.zeros(7), tracker.tip).nearest) == repr(expected)
-    assert repr(fp.Tracker(PANDA, fp.MAN(), READY, clearance=CLEARANCE).tick([0.4, 0, 0.5]).nearest) == repr(expected)
+    assert repr(fp.Tracker(PANDA, fp.MAN(), READY, bounds=[CLEARANCE]).tick([0.4, 0, 0.5]).nearest) == repr(expected)
     assert fp.Tracker(PANDA, fp.MAN(), READY).tick([0.4, 0, 0.5]).nearest is None
 
 
 def test_an_obstacle_moves() -> None:
-    tracker = fp.Tracker(PANDA, SCHEMES[1], READY, clearance=CLEARANCE)
+    tracker = fp.Tracker(PANDA, SCHEMES[1], READY, bounds=[CLEARANCE])
     for height in (0.1, 0.2, -0.5):
         moved = fp.HalfSpace([0, 0, 1], height)
         tracker.move("table", moved)
@@ -303,7 +303,7 @@ def test_an_arm_avoids_an_obstacle_that_is_expected_to_continue() -> None:
     """If the table is expected to approach, the arm stops farther away."""
 
     def final_distance(speed: float) -> float:
-        tracker = fp.Tracker(PANDA, SCHEMES[1], READY, clearance=fp.Clearance(CAPSULES[5:], [TABLE]))
+        tracker = fp.Tracker(PANDA, SCHEMES[1], READY, bounds=[fp.Clearance(CAPSULES[5:], [TABLE])])
         tracker.move("table", TABLE, velocity=(0, 0, speed))
         for _ in range(3500):
             tick = tracker.tick([0.4, 0.1, -0.2])
@@ -319,14 +319,14 @@ def test_a_run_is_loaded_and_replayed(tmp_path: Path) -> None:
     wall = fp.Cuboid(turned(np.random.default_rng(1), 0.0), [0.1, 0.1, 0.1], name="box")
     far = fp.Capsule(0, [2, 0, 0], [2, 0, 1], 0.1, "post")
     clearance = fp.Clearance(CAPSULES[2:], [TABLE, wall, far], margin=1 / 300, allowed=[("box", "upper arm")])
-    run = fp.track(PANDA, THROUGH, SCHEMES[1], READY, clearance=clearance)
+    run = fp.track(PANDA, THROUGH, SCHEMES[1], READY, bounds=[clearance])
     run.save(tmp_path / "run.npz")
     back = fp.load(tmp_path / "run.npz")
     assert run.clearance is not None
     assert back.clearance is not None
     assert back == run
     assert back.options == run.options
-    assert back.options["clearance"] == clearance
+    assert back.options["bounds"] == (clearance,)
     assert back.clearance.tobytes() == run.clearance.tobytes()
     assert back.status.code is run.status.code
     assert back.replay() == run
@@ -362,9 +362,12 @@ BALL = fp.Capsule(0, [0, 0, 0], [0, 0, 0], 0.1, "ball")
         ),
         (lambda: CLEARANCE.pairs(PLANAR), "capsules[3].link = 4: must be a link of the arm, from 0 to 3"),
         (lambda: CLEARANCE.nearest(PANDA, [0, 0]), "q has 2 entries: must have 7, one per joint"),
-        (lambda: fp.Tracker(PANDA, fp.MAN(), READY, clearance=3), "clearance: must be a Clearance"),
         (
-            lambda: fp.track(PANDA, THROUGH, fp.MAN(), READY, clearance=fp.Clearance(CAPSULES, margin=0.3)),
+            lambda: fp.Tracker(PANDA, fp.MAN(), READY, bounds=[3]),
+            "bounds: must be a Clearance and TaskBounds in a sequence",
+        ),
+        (
+            lambda: fp.track(PANDA, THROUGH, fp.MAN(), READY, bounds=[fp.Clearance(CAPSULES, margin=0.3)]),
             "q0: hand and upper arm are 0.2372 m apart, closer than margin=0.3; give margin=0.2372 or ",
         ),
         (lambda: tracker().move("tabel", TABLE), "name = 'tabel': must be one of the obstacles: table"),
@@ -381,7 +384,7 @@ def test_invalid_arguments_are_rejected(make: Callable[[], Any], message: str) -
 
 
 def tracker(*obstacles: Any) -> fp.Tracker:
-    return fp.Tracker(PANDA, fp.MAN(), READY, clearance=fp.Clearance(CAPSULES[3:], obstacles or [TABLE]))
+    return fp.Tracker(PANDA, fp.MAN(), READY, bounds=[fp.Clearance(CAPSULES[3:], obstacles or [TABLE])])
 
 
 # From files
@@ -456,7 +459,7 @@ def test_command_line(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert result.exit_code == 0, result.output
     run = fp.load("out/here/run.npz")
     assert run.clearance is not None
-    assert run.options["clearance"] == fp.Clearance.from_urdf(
+    assert run.options["bounds"][0] == fp.Clearance.from_urdf(
         "arm.urdf",
         "l7",
         srdf="arm.srdf",
@@ -473,7 +476,7 @@ def test_command_line(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert fp.load("again/run.npz") == run
     assert call("compare", "--job", "here/job.toml", "--schemes", "mvn,fpbm").exit_code == 0
     result = call("track", "--job", "here/job.toml", "--margin", "0.03", "--out", "wider")
-    assert fp.load("wider/run.npz").options["clearance"].margin == 0.03
+    assert fp.load("wider/run.npz").options["bounds"][0].margin == 0.03
 
 
 def test_servo_has_the_same_clearance(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -492,7 +495,7 @@ def test_servo_has_the_same_clearance(folder: Path, monkeypatch: pytest.MonkeyPa
     limits = ("--limit-acceleration", "10")
     result = call("servo", *URDF, *limits, *FILES, "--job", "table.toml", "--no-browser")
     assert result.exit_code == 0, result.output
-    assert shown[0]["clearance"] == fp.Clearance.from_urdf(
+    assert shown[0]["bounds"][0] == fp.Clearance.from_urdf(
         "arm.urdf",
         "l7",
         srdf="arm.srdf",

@@ -79,7 +79,7 @@ def test_no_contact_of_two_arms_driven_together(fault: bool, tmp_path: Path) -> 
             assert nearest is not None
             if nearest.distance > 1.5 * clearance.margin:
                 break
-        tracker = fp.Tracker(robot, scheme, q, stack=stack, limits=limits, clearance=guarded)
+        tracker = fp.Tracker(robot, scheme, q, stack=stack, limits=limits, bounds=[guarded])
         places = {side: place(rng, side, robot) for side in two_arms.SIDES}
         touched, path = False, [q]
         for k in range(TICKS):
@@ -165,7 +165,7 @@ def test_a_stack_of_two_arms_keeps_the_margin(level: str) -> None:
     hands = [fp.PositionTask("left_tip", name="left"), fp.PositionTask("right_tip", name="right")]
     stack = fp.Stack(hands, fp.PostureTask(READY, k1=4, k2=4, k=2))
     scheme = fp.MVN() if level == "velocity" else fp.Balanced(0, np.ones(14), null_damping=2)
-    tracker = fp.Tracker(robot, scheme, READY, stack=stack, clearance=clearance)
+    tracker = fp.Tracker(robot, scheme, READY, stack=stack, bounds=[clearance])
     goals = {"left": tracker.tip["right"].copy(), "right": tracker.tip["left"].copy()}
     least = np.inf
     for _ in range(2000):
@@ -292,7 +292,7 @@ def test_a_mobile_base_stops_before_a_wall(tmp_path: Path) -> None:
     stack = fp.Stack(fp.PositionTask("chest"), fp.PostureTask(np.zeros(robot.dof), k1=4, k2=4))
     q = np.where(np.isfinite(limits.lower), 0.1, 0.0)
     scheme = fp.Balanced(0, np.ones(robot.dof), null_damping=2)
-    tracker = fp.Tracker(robot, scheme, q, stack=stack, limits=limits, clearance=clearance)
+    tracker = fp.Tracker(robot, scheme, q, stack=stack, limits=limits, bounds=[clearance])
     least = np.inf
     for _ in range(6000):
         tick = tracker.tick({"position": [5.0, 0.5, 0.2]})
@@ -307,7 +307,7 @@ def test_a_clearance_without_pairs_changes_nothing() -> None:
     scheme = fp.Balanced(0, np.ones(14), null_damping=2)
     nothing = fp.Clearance.from_arms(ARMS, {})
     assert nothing.nearest(robot, READY) is None
-    one, other = (fp.Tracker(robot, scheme, READY, stack=stack, clearance=each) for each in (None, nothing))
+    one, other = (fp.Tracker(robot, scheme, READY, stack=stack, bounds=each) for each in ((), [nothing]))
     goal = one.tip["left"].copy()
     goal[:3, 3] += [0.1, -0.1, 0.2]
     for _ in range(500):

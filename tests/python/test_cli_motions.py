@@ -758,7 +758,6 @@ def test_servo(task: str, monkeypatch: pytest.MonkeyPatch) -> None:
     assert (arm, scheme) == (panda, fp.FPBM(0.6, np.ones(7), 7, 25, null_damping=2))
     assert q0[3] == -2.3562
     limits = how.pop("limits")
-    assert how.pop("clearance") is None
     assert how.pop("bounds") == ()
     assert how == {"task": task, "stack": None, "dt": 1e-3, "urdf": None, "port": 9000, "open_browser": False}
     assert (limits.velocity == 0.5).all()

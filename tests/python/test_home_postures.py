@@ -115,10 +115,10 @@ def test_required_postures_are_accepted(name: str) -> None:
     arm = fp.SerialArm.from_urdf(ROBOTS / urdf, tip, base)
     without = fp.Clearance.from_urdf(ROBOTS / urdf, tip, base)
     with pytest.raises(fp.ParameterError, match=expected):
-        fp.Tracker(arm, fp.MVN(), home, clearance=without)
+        fp.Tracker(arm, fp.MVN(), home, bounds=[without])
     clearance = fp.Clearance.from_urdf(ROBOTS / urdf, tip, base, postures=home)
     assert clearance.margin == MARGIN
-    fp.Tracker(arm, fp.MVN(), home, clearance=clearance)
+    fp.Tracker(arm, fp.MVN(), home, bounds=[clearance])
     nearest = clearance.nearest(arm, home)
     assert nearest is not None
     assert nearest.distance >= MARGIN
@@ -226,7 +226,7 @@ def test_links_that_touch_are_rejected(name: str, once) -> None:
     (urdf, tip, base, _), message = CLOSE[name]
     arm = fp.SerialArm.from_urdf(ROBOTS / urdf, tip, base)
     with pytest.raises(fp.ParameterError, match=message):
-        fp.Tracker(arm, fp.MVN(), np.zeros(arm.dof), clearance=once(fitted, urdf, tip, base, 2))
+        fp.Tracker(arm, fp.MVN(), np.zeros(arm.dof), bounds=[once(fitted, urdf, tip, base, 2)])
 
 
 def test_the_message_names_both_remedies() -> None:
@@ -234,15 +234,15 @@ def test_the_message_names_both_remedies() -> None:
     q = np.array([0, -PI / 4, 0, -3 * PI / 4, 0, PI / 2, PI / 4])
     capsules = fp.Clearance.preset("panda").capsules
     with pytest.raises(fp.ParameterError) as caught:
-        fp.Tracker(arm, fp.MVN(), q, clearance=fp.Clearance(capsules))
+        fp.Tracker(arm, fp.MVN(), q, bounds=[fp.Clearance(capsules)])
     assert str(caught.value) == (
         "q0: panda_link7 and panda_link5 are 0.0089 m apart, closer than margin=0.01; "
         "give margin=0.0089 or allowed=[('panda_link7', 'panda_link5')]"
     )
     assert caught.value.name == "q0"
     (proposed,) = re.findall(r"give margin=(\S+) or allowed=(.*)", str(caught.value))
-    fp.Tracker(arm, fp.MVN(), q, clearance=fp.Clearance(capsules, margin=float(proposed[0])))
-    fp.Tracker(arm, fp.MVN(), q, clearance=fp.Clearance(capsules, allowed=eval(proposed[1])))
+    fp.Tracker(arm, fp.MVN(), q, bounds=[fp.Clearance(capsules, margin=float(proposed[0]))])
+    fp.Tracker(arm, fp.MVN(), q, bounds=[fp.Clearance(capsules, allowed=eval(proposed[1]))])
 
 
 # Input of the cuts of capsules

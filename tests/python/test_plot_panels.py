@@ -147,7 +147,7 @@ def test_clearance_and_its_margin() -> None:
     run = a_run_within_limits()
     axes = drawn(run, "clearance")
     np.testing.assert_array_equal(axes.lines[0].get_ydata(), run.clearance)
-    assert set(axes.lines[1].get_ydata()) == {run.options["clearance"].margin}
+    assert set(axes.lines[1].get_ydata()) == {run.options["bounds"][0].margin}
     assert axes.get_ylim()[0] == 0
     assert drawn(replace(run, clearance=run.clearance - 0.1), "clearance").get_ylim()[0] < 0
 

@@ -86,7 +86,7 @@ def test_joints_return_with_a_clearance(level: str, jerk: float) -> None:
     q0[0], q0[5] = limits.upper[0] + 0.15, limits.upper[5] + 0.05
     table = fp.HalfSpace([0, 0, 1], -0.05, name="table")
     clearance = fp.Clearance.preset("panda", obstacles=[table], margin=0.01)
-    tracker = fp.Tracker(panda, laws(7)[level], q0, limits=limits, clearance=clearance, recover_start=True)
+    tracker = fp.Tracker(panda, laws(7)[level], q0, limits=limits, bounds=[clearance], recover_start=True)
     goal, nearest = tracker.tip + np.array([0, 0.2, -0.4]), []
 
     def tick() -> Any:
@@ -97,7 +97,7 @@ def test_joints_return_with_a_clearance(level: str, jerk: float) -> None:
     check(tracker, tick, limits, 1e-3, 4.0)
     assert min(nearest) >= 0.01 - 1e-9
     with pytest.raises(fp.ParameterError, match=r"qd0\[0\] = 0.1: must be 0 before a start outside the bounds"):
-        fp.Tracker(panda, laws(7)[level], q0, qd0=[0.1] * 7, limits=limits, clearance=clearance, recover_start=True)
+        fp.Tracker(panda, laws(7)[level], q0, qd0=[0.1] * 7, limits=limits, bounds=[clearance], recover_start=True)
 
 
 def test_track_and_the_run() -> None:

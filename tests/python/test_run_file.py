@@ -272,10 +272,10 @@ def rewritten(file, change=None, **members):
     np.savez(file, **{name: array for name, array in arrays.items() if array is not None})
 
 
-def test_a_file_without_a_clearance_is_loaded(tmp_path, q0):
+def test_a_file_without_bounds_is_loaded(tmp_path, q0):
     run = fp.track(FLAT, fp.Circle(0.45, 1.0), fp.MVN(k=5), q0, dt=0.01, limits=LIMITS)
     run.save(tmp_path / "run.npz")
-    options = {name: to_table(value) for name, value in run.options.items() if name != "clearance"}
+    options = {name: to_table(value) for name, value in run.options.items() if name != "bounds"}
     for code in ("SLOWED", "STALLED", "SINGULAR"):
         status = {"code": code, "time": 1.0, "q": q0.tolist()}
         rewritten(tmp_path / "run.npz", {"options": options, "status": status})

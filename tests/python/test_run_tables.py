@@ -39,7 +39,9 @@ def in_space(task="pose"):
 def limited(clearance=None):
     start = np.pi / np.array([12, 12, 15, 15])
     scheme = fp.FPBM(0.6, [1, 2, 3, 4], 10, 25)
-    return fp.track(FLAT, fp.Circle(0.45, 1.0), scheme, start, dt=0.02, limits=TIGHT, clearance=clearance)
+    return fp.track(
+        FLAT, fp.Circle(0.45, 1.0), scheme, start, dt=0.02, limits=TIGHT, bounds=[clearance] if clearance else ()
+    )
 
 
 RUNS = {

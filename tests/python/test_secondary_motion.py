@@ -95,6 +95,6 @@ def test_motion_away_from_shapes_does_not_move_the_tip(level):
             scheme = fp.WMVN(np.ones(7), k=5, rest_posture=rest, null_stiffness=1)
         else:
             scheme = fp.FPBM(0.6, np.ones(7), 10, 25, null_damping=2, rest_posture=rest, null_stiffness=1)
-        tracker = fp.Tracker(arm, scheme, q0, task="pose", clearance=clearance, dt=DT)
+        tracker = fp.Tracker(arm, scheme, q0, task="pose", bounds=[clearance], dt=DT)
         errors.append(error_at_rest(tracker, tracker.tip))
     check(f"away from shapes, {level}", errors)

@@ -150,7 +150,7 @@ def test_missing_bounds_are_reported():
 def test_the_arm_avoids_a_dragged_obstacle():
     links = [fp.Capsule(i, [0, 0, 0], [1, 0, 0], 0.05, f"link {i}") for i in range(1, 5)]
     around = [fp.Capsule(0, [2.2, 0.3, -1], [2.2, 0.3, 1], 0.1, "post"), fp.HalfSpace([0, 1, 0], -2, name="wall")]
-    with a_servo(clearance=fp.Clearance(links, around)) as servo:
+    with a_servo(bounds=[fp.Clearance(links, around)]) as servo:
         wait_until(lambda: servo.tick is not None)
         ((place, grip),) = servo._scene._grips  # The wall has no handle.
         np.testing.assert_allclose(place, [2.2, 0.3, 0])
@@ -296,7 +296,7 @@ def test_the_server_runs_until_it_is_closed():
         ({"task": "dance"}, "task = 'dance'"),
         ({"q0": [0, 0]}, "q0 has 2 entries"),
         ({"q0": [9, 0, 0, 0]}, r"q0\[0\] = 9: must be within"),
-        ({"clearance": 3}, "clearance: must be a Clearance"),
+        ({"bounds": [3]}, "bounds: must be a Clearance and TaskBounds in a sequence"),
         ({"port": -1}, "port = -1"),
         ({"urdf": "none.urdf"}, "must not be given for a planar arm"),
         ({"targets": fp.TargetFilter([0, 0, 0], velocity=1, acceleration=1, jerk=1)}, "another task"),

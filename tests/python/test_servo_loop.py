@@ -271,7 +271,7 @@ def post(x=2.2, y=0.3):
 
 def a_clear_loop(**how):
     links = [fp.Capsule(i, [0, 0, 0], [1, 0, 0], 0.05, f"link {i}") for i in range(1, 5)]
-    return a_loop("planar", "position", clearance=fp.Clearance(links, [post()]), **how)
+    return a_loop("planar", "position", bounds=[fp.Clearance(links, [post()])], **how)
 
 
 @settings(max_examples=15, deadline=None)

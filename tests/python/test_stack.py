@@ -266,7 +266,7 @@ def test_measured_states_are_resolved(panda, balanced):
 def test_the_margin_to_a_wall_is_kept(panda, balanced):
     wall = fp.HalfSpace((0, -1, 0), -0.25, name="wall")
     clearance = fp.Clearance([fp.Capsule(7, (0, 0, 0), (0, 0, 0.1), 0.05)], [wall], margin=0.01)
-    tracker = fp.Tracker(panda, balanced, READY, stack=cup(), clearance=clearance)
+    tracker = fp.Tracker(panda, balanced, READY, stack=cup(), bounds=[clearance])
     goal = tracker.tip["place"] + [0.0, 0.6, 0.0]
     nearest = np.inf
     for _ in range(9000):

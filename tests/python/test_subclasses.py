@@ -131,13 +131,13 @@ def test_a_subclass_of_a_shape_or_a_clearance(panda: fp.SerialArm) -> None:
     for obstacle in (wall, box, ball):
         clearance = fp.Clearance.preset("panda", obstacles=[obstacle], margin=0.001)
         try:
-            expected = ticks(panda, scheme(), clearance=clearance)
+            expected = ticks(panda, scheme(), bounds=[clearance])
         except fp.ParameterError:
             continue
         for attributes in HOSTILE:
             mine = fp.Clearance.preset("panda", obstacles=[subclass(obstacle, attributes)], margin=0.001)
-            assert np.array_equal(ticks(panda, scheme(), clearance=mine), expected)
-            assert np.array_equal(ticks(panda, scheme(), clearance=subclass(clearance, attributes)), expected)
+            assert np.array_equal(ticks(panda, scheme(), bounds=[mine]), expected)
+            assert np.array_equal(ticks(panda, scheme(), bounds=[subclass(clearance, attributes)]), expected)
 
 
 def test_a_subclass_of_an_arm_of_joints_and_of_limits(panda: fp.SerialArm) -> None:
@@ -215,7 +215,6 @@ WHAT = {
     "path": "a path",
     "scheme": "a scheme",
     "stack": "a Stack",
-    "clearance": "a Clearance",
     "bounds": "TaskBounds",
     "limits": "JointLimits",
 }
@@ -236,9 +235,7 @@ def test_foreign_arguments_are_refused_by_name(call: str, argument: str, given: 
     known: Callable[..., Any] = getattr(fp, call)
     if name not in arguments and (call, name) in {
         ("simulate", "limits"),
-        ("simulate", "clearance"),
         ("simulate", "bounds"),
-        ("sweep", "clearance"),
         ("sweep", "bounds"),
         ("Tracker", "path"),
     }:

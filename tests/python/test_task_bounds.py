@@ -94,9 +94,8 @@ def test_walls_and_cones_hold_while_an_obstacle_presses_the_arm(level, dt):
             fp.TaskBounds(fp.AxisTask(x=tip[:3, 2]), upper=0.02),
         )
         clearance = fp.Clearance(shapes.capsules, [plate(0)], margin=0.01, allowed=shapes.allowed)
-        tracker = fp.Tracker(
-            arm, SCHEMES[level](7, 1), q0, clearance=clearance, bounds=bounds[seed % 2 :][:1], dt=dt, task="pose"
-        )
+        kept = [clearance, bounds[seed % 2]]
+        tracker = fp.Tracker(arm, SCHEMES[level](7, 1), q0, bounds=kept, dt=dt, task="pose")
         for k in range(round(2 / dt)):
             tracker.move("plate", plate(0.3 * dt * k), velocity=[0, 0, -0.3])
             now = arm.forward(tracker.tick(tip).q)

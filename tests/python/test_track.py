@@ -122,8 +122,10 @@ def test_options_reproduce_the_run(q0):
         "singular_radius": 0.03,
         "singular_brake": 5.0,
         "null_damping": 3.0,
-        "clearance": fp.Clearance([fp.Capsule(4, [0, 0, 0], [1, 0, 0], 0.1)], [fp.HalfSpace([0, 1, 0], -3)]),
-        "bounds": (fp.TaskBounds(fp.PositionTask(rows=("x",)), upper=5),),
+        "bounds": (
+            fp.Clearance([fp.Capsule(4, [0, 0, 0], [1, 0, 0], 0.1)], [fp.HalfSpace([0, 1, 0], -3)]),
+            fp.TaskBounds(fp.PositionTask(rows=("x",)), upper=5),
+        ),
         "recover_start": False,
         "stack": None,
     }

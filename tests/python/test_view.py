@@ -117,7 +117,7 @@ WIDE = fp.JointLimits(lower=[-3] * 4, upper=[3] * 4, velocity=[2] * 4, accelerat
 
 def test_the_clearance_is_drawn_and_reported():
     arm = fp.PlanarArm([1, 1, 1, 1])
-    run = fp.track(arm, fp.Line([0, -2.5], 2.0), fpbm(), Q0, dt=0.01, limits=WIDE, clearance=CLEARANCE)
+    run = fp.track(arm, fp.Line([0, -2.5], 2.0), fpbm(), Q0, dt=0.01, limits=WIDE, bounds=[CLEARANCE])
     with Viewer(run, port=0) as viewer:
         shapes, label = viewer._scene._shapes, "distance of the nearest shapes"
         for moment in (0.0, 1.0, 2.0):

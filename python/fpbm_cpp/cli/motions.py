@@ -172,7 +172,6 @@ def servo(request: Request, port: int, browser: bool) -> None:
                 stack=motion.stack,
                 dt=motion.options.dt,
                 limits=motion.limits,
-                clearance=motion.clearance,
                 bounds=motion.bounds,
                 urdf=motion.job["arm"].get("file"),
                 port=port,

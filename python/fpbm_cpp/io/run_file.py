@@ -27,7 +27,7 @@ from ..tasks import TASKS
 FORMAT = "fpbm_cpp run"
 KINDS: dict[str, Makers] = {"arm": ROBOTS, "path": EVERY_PATH, "scheme": SCHEMES}
 FUNCTIONS = {each.__name__: each for each in (simulate, track)}  # Functions that make runs, by name.
-VERSION = 2  # Version of the format; incremented for each new format.
+VERSION = 3  # Version of the format; incremented for each new format.
 
 
 def save(run: Run, file: str | os.PathLike[str], note: Any, seed: Any) -> None:
@@ -114,9 +114,8 @@ def _members(content: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
 def _run(meta: dict[str, Any], arrays: dict[str, Any]) -> Run:
     made_of = {name: from_table(meta[name], KINDS[name], name) for name in KINDS}
     options: dict[str, Any] = {name: np.inf if value == "inf" else value for name, value in meta["options"].items()}
-    for name in ("limits", "clearance"):
-        if options.get(name) is not None:
-            options[name] = from_table(options[name], name=name)
+    if options.get("limits") is not None:
+        options["limits"] = from_table(options["limits"], name="limits")
     if "bounds" in options:
         options["bounds"] = tuple(from_table(each, name="bounds") for each in options["bounds"])
     if options.get("stack") is not None:

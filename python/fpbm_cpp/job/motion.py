@@ -17,7 +17,7 @@ from tomlkit.exceptions import TOMLKitError
 from .._core import check_sweep
 from .._types import Array
 from ..arms import Arm, PlanarArm, SerialArm
-from ..clearance import Clearance
+from ..bounds import Bound
 from ..errors import not_one_of, wrong
 from ..files import write_whole
 from ..joints import JointLimits
@@ -29,7 +29,6 @@ from ..paths import PATH_OPTIONS, Circle, Path
 from ..robots import Robot
 from ..schemes import MVN, Scheme
 from ..table import is_by_task, to_table
-from ..task_bounds import TaskBounds
 from ..tasks import FrameTask, Stack
 from .sections import (
     FREE,
@@ -91,8 +90,7 @@ class Motion:
     options: RunOptions
     stack: Stack | None  # None if the tip's task is the only task.
     limits: JointLimits | None  # None if limits are not kept.
-    clearance: Clearance | None  # Needs limits.
-    bounds: tuple[TaskBounds, ...]  # Bounds of tasks; need limits.
+    bounds: tuple[Bound, ...]  # Need limits.
 
     @property
     def q0(self) -> Array:
@@ -142,9 +140,7 @@ class Motion:
         keywords = {**self.keywords, "qd0": self.options.qd0}
         with job_errors():
             if self.limits is not None:
-                return track(
-                    self.arm, self.path, self.scheme, self.q0, clearance=self.clearance, bounds=self.bounds, **keywords
-                )
+                return track(self.arm, self.path, self.scheme, self.q0, bounds=self.bounds, **keywords)
             del keywords["limits"]
             return simulate(self.arm, self.path, self.scheme, self.q0, partial=True, **keywords)
 
@@ -164,9 +160,10 @@ def prepare(job: Table) -> Motion:
             missing = ": is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is usual, for example "
             missing += "--limit-acceleration 10, or acceleration = 10 under [limits] in a job"
             raise JobError(wrong("limits.acceleration", None, missing))
-    clearance = make("clearance", full["clearance"], arm) if "clearance" in full else None
     bounds = make("bounds", full.get("bounds", []), arm)
-    motion = Motion(full, taken(job, full), arm, path, scheme, options, stack, limits, clearance, bounds)
+    if "clearance" in full:
+        bounds = (make("clearance", full["clearance"], arm), *bounds)
+    motion = Motion(full, taken(job, full), arm, path, scheme, options, stack, limits, bounds)
     with job_errors():
         try:
             _, kind, followed, tasks = task_and_paths(path, options.task, stack)

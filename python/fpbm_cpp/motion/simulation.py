@@ -1,6 +1,6 @@
 """A whole motion: simulated without limits, or tracked within the joint limits."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -8,13 +8,12 @@ from numpy.typing import ArrayLike
 
 from .._core import failed, rollout
 from ..arms import Arm
-from ..clearance import Clearance
+from ..bounds import Bound, bounds_of
 from ..errors import ResolutionError, not_one_of, require, wrong
 from ..joints import JointLimits, limits_of
 from ..paths import Path
 from ..robots import Robot
 from ..schemes import Scheme
-from ..task_bounds import TaskBounds
 from ..tasks import PoseTask, Stack
 from .run import Run
 from .run_data import Paths, RunStatus
@@ -31,8 +30,7 @@ class LimitOptions(NamedTuple):
     singular_radius: float = 0.02
     singular_brake: float = 10.0
     null_damping: float = 2.0
-    clearance: Clearance | None = None
-    bounds: Sequence[TaskBounds] = ()
+    bounds: Sequence[Bound] = ()
     recover_start: bool = False
 
 
@@ -120,8 +118,7 @@ def track(
     singular_radius: float = 0.02,
     singular_brake: float = 10.0,
     null_damping: float = 2.0,
-    clearance: Clearance | None = None,
-    bounds: Sequence[TaskBounds] = (),
+    bounds: Sequence[Bound] = (),
     recover_start: bool = False,
 ) -> Run:
     """Move an arm along a path under a scheme, within its joints' limits and through singular postures.
@@ -130,8 +127,8 @@ def track(
     motion never stops early. Sample k has the state and the tip's error at t_k. The mean acceleration, the task scale
     and the joints on a bound belong to the tick that starts at t_k. The status is the worst of all ticks: OK,
     DAMPED, SLOWED, BLOCKED or STALLED; without damping, the status may be SINGULAR, if the arm brakes at a singular
-    posture. Raises ValueError as simulate() does, and if a limit is missing, or if the start violates a limit or the
-    clearance.
+    posture. Raises ValueError as simulate() does, and if a limit is missing, or if the start violates a limit or a
+    bound.
 
     Parameters
     ----------
@@ -140,13 +137,12 @@ def track(
         it time to arrive.
     limits, error_bound, integral_gain, integral_bound, stall_time
         As for Tracker.
-    singular_radius, singular_brake, null_damping, clearance, bounds, recover_start
+    singular_radius, singular_brake, null_damping, bounds, recover_start
         As for Tracker.
     """
     require_motion(arm, path, scheme)
     options = motion_options(arm, dt, hold, qd0)
     name, kind, followed, tasks = task_and_paths(path, task, stack)
-    require("bounds", bounds, Iterable, "TaskBounds in a sequence")
     limited = LimitOptions(
         limits_of(arm, limits),
         error_bound,
@@ -156,8 +152,7 @@ def track(
         singular_radius,
         singular_brake,
         null_damping,
-        clearance,
-        tuple(bounds),
+        bounds_of(bounds),
         bool(recover_start),
     )
     outcome = rollout(arm, followed, scheme, q0, options["qd0"], dt, hold, kind, limited, tasks)

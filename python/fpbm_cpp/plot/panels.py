@@ -11,6 +11,7 @@ from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from .._types import Array
 from ..arms import Arm
+from ..bounds import clearance_among
 from ..motion.run import Run
 from ..motion.task_errors import error_parts, tracks
 from ..robots import Robot
@@ -236,7 +237,7 @@ def saturation_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
 def clearance_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
     """Distance between the two nearest shapes, and the margin."""
     assert run.clearance is not None
-    clearance = run.options.get("clearance")
+    clearance = clearance_among(run.options.get("bounds") or ())
     axes.plot(run.t, np.where(np.isfinite(run.clearance), run.clearance, np.nan), color=theme.lines[0], lw=LINE)
     if clearance is not None:
         margin = axes.axhline(clearance.margin, color=theme.ink, lw=0.8, ls=(0, (1, 1)), label="margin")

@@ -13,13 +13,12 @@ from numpy.typing import ArrayLike
 
 from .._core import TargetFilter
 from ..arms import Arm
-from ..clearance import Clearance
+from ..bounds import Bound
 from ..joints import JointLimits
 from ..motion.run_data import Paths
 from ..motion.simulation import simulate
 from ..robots import Robot
 from ..schemes import Scheme
-from ..task_bounds import TaskBounds
 from ..tasks import Stack
 
 if TYPE_CHECKING:
@@ -86,8 +85,7 @@ def servo(
     dt: float = 1e-3,
     limits: JointLimits | None = None,
     targets: TargetFilter | Mapping[str, TargetFilter] | None = None,
-    clearance: Clearance | None = None,
-    bounds: Sequence[TaskBounds] = (),
+    bounds: Sequence[Bound] = (),
     urdf: str | os.PathLike[str] | None = None,
     host: str = "127.0.0.1",
     port: int = 8080,
@@ -101,7 +99,7 @@ def servo(
 
     The positions of the handle, 20 per second, are the input of targets, a TargetFilter with its own bounds. The
     default bounds depend on the length L of the arm: L per second, 5 L/s^2, 100 L/s^3 and 2 rad/s, 10 rad/s^2,
-    200 rad/s^3. task, dt, limits, clearance and bounds are as for Tracker; urdf, host and port are as for view().
+    200 rad/s^3. task, dt, limits and bounds are as for Tracker; urdf, host and port are as for view().
     Shapes of the clearance are translucent, with a line between the nearest shapes. Arrows move obstacles that are
     capsules or boxes, which follow the arrows at 0.3 m/s.
 
@@ -123,7 +121,6 @@ def servo(
         dt=dt,
         limits=limits,
         targets=targets,
-        clearance=clearance,
         bounds=bounds,
         urdf=urdf,
         host=host,

@@ -46,7 +46,7 @@ class LiveScene:
             for name, color, width in (("/trace", TIP, 4.0), ("/gap", TARGET, 2.0))
         )
         self._shapes = None if loop.clearance is None else Shapes(server.scene, loop.arm, loop.clearance)
-        draw_bounds(server.scene, loop.bounds)
+        draw_bounds(server.scene, loop.task_bounds)
         self._grips = _grips(server, loop, 0.12 * radius)
         self.restart(loop)
 

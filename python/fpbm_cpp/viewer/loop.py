@@ -14,12 +14,12 @@ from numpy.typing import ArrayLike
 from .._core import Status, TargetFilter, Tick, Tracker
 from .._types import Array
 from ..arms import Arm
+from ..bounds import Bound, bounds_of, clearance_among, task_bounds_among
 from ..clearance import Clearance
 from ..joints import JointLimits, limits_of
 from ..robots import Robot
 from ..schemes import Scheme
 from ..skeleton import frames_of, length
-from ..task_bounds import TaskBounds
 from ..tasks import Stack, Task
 from .obstacles import Obstacles
 from .strip import Strip
@@ -56,15 +56,16 @@ class ServoLoop:
         dt: float = 1e-3,
         limits: JointLimits | None = None,
         targets: TargetFilter | Mapping[str, TargetFilter] | None = None,
-        clearance: Clearance | None = None,
-        bounds: Sequence[TaskBounds] = (),
+        bounds: Sequence[Bound] = (),
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         self.arm, self.stack, self.dt = arm, stack, dt
         self.limits = limits_of(arm, limits) or arm.limits
         self._task, self._scheme, self._clock, self._lock = task, scheme, clock, threading.RLock()
         self._q0 = np.array(q0, dtype=float)
-        self._obstacles, self.bounds = Obstacles(clearance, dt), tuple(bounds)
+        bounds = bounds_of(bounds)
+        self._obstacles, self.task_bounds = Obstacles(clearance_among(bounds), dt), task_bounds_among(bounds)
+        self._others = tuple(each for each in bounds if not isinstance(each, Clearance))
         self._tracker = self._new_tracker(scheme, self._q0)  # Rejects an invalid task or stack.
         self._targets = Targets(task, stack, self._tracker.tip, targets, length(arm, self._q0), dt)
         self._tracker.tick(self._targets.references)  # Rejects an invalid filter.
@@ -187,6 +188,11 @@ class ServoLoop:
             return max(self._said, key=lambda status: status.value, default=Status.OK)
 
     @property
+    def _bounds(self) -> tuple[Bound, ...]:
+        """The bounds, with the obstacles at their present places."""
+        return self._others if self.clearance is None else (self.clearance, *self._others)
+
+    @property
     def stopped(self) -> bool:
         """Whether stop() was called last, not resume()."""
         return self._stopped
@@ -202,8 +208,7 @@ class ServoLoop:
             stack=self.stack,
             dt=self.dt,
             limits=self.limits,
-            clearance=self._obstacles.clearance,
-            bounds=self.bounds,
+            bounds=self._bounds,
             qd0=qd0,
             qdd0=qdd0,
         )

@@ -24,8 +24,7 @@ class Obstacles:
 
     def __init__(self, clearance: Clearance | None, dt: float) -> None:
         self._first, self._dt = clearance, dt
-        # The tracker rejects an object that is not a clearance.
-        self._given: dict[str, Obstacle] = {each.name: each for each in getattr(clearance, "obstacles", ())}
+        self._given: dict[str, Obstacle] = {each.name: each for each in clearance.obstacles} if clearance else {}
         self.restart()
 
     @property

@@ -18,6 +18,7 @@ from viser.transforms import SO3
 from .._core import rotation_vector
 from .._types import Array
 from ..arms import Arm, PlanarArm
+from ..bounds import task_bounds_among
 from ..robots import Robot
 from ..skeleton import joint_points, joints_of, length, link_frames
 from ..urdf.mesh_file import find_mesh
@@ -144,7 +145,7 @@ class Scene:
         self._arm, self._tip, _ = set_up(server, run.arm, run.q[0], meshes, points)
         clearance = playback.clearance
         self._shapes = None if clearance is None else Shapes(server.scene, run.arm, clearance)
-        draw_bounds(server.scene, run.options.get("bounds") or ())
+        draw_bounds(server.scene, task_bounds_among(run.options.get("bounds") or ()))
         nothing = np.zeros((0, 2, 3), dtype=np.float32)
         lines = ("/start", START, 2.0), ("/target", TARGET, 2.0), ("/tip_path", TIP, 5.0)
         self._start, self._target, self._path = (

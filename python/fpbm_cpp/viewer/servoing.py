@@ -32,7 +32,7 @@ class Servo(Page):
 
     Serves from another thread until close(), or until the end of a with block; url is the address of the page.
     Parameters and errors are as for fpbm_cpp.servo(); options are the parameters of ServoLoop: task, stack, dt, limits,
-    targets, clearance and bounds.
+    targets and bounds.
     """
 
     def __init__(

@@ -6,6 +6,7 @@ import os
 import threading
 import webbrowser
 
+from ..bounds import clearance_among
 from ..motion.run import Run
 from ..motion.simulation import simulate, track
 from ..schemes import Scheme
@@ -33,7 +34,7 @@ class Viewer(Page):
         port: int = 8080,
         open_browser: bool = False,
     ) -> None:
-        playback = Playback(run, run.options.get("clearance"))
+        playback = Playback(run, clearance_among(run.options.get("bounds") or ()))
         meshes = None if urdf is None else Meshes(urdf, run.arm, playback.run.q[0])
         super().__init__(host, port)
         self._first = run
@@ -105,7 +106,7 @@ class Viewer(Page):
                 self._readout.refuse(str(error))
 
     def _show(self, run: Run) -> None:
-        playback = Playback(run, self._first.options.get("clearance"))
+        playback = Playback(run, clearance_among(self._first.options.get("bounds") or ()))
         with self._lock, self._server.atomic():
             self._asked = run.scheme, self._controls.limited
             self._run, self._playback = run, playback

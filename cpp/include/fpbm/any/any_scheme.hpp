@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <memory>
 
-#include "fpbm/core/level.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/model/kinematics.hpp"

@@ -8,7 +8,6 @@
 #include "fpbm/bound/bounds.hpp"
 #include "fpbm/bound/detail/joint_axes.hpp"
 #include "fpbm/bound/detail/link_vector.hpp"
-#include "fpbm/bound/task_bounds.hpp"
 #include "fpbm/model/robot.hpp"
 
 namespace fpbm {

@@ -1,195 +1,84 @@
 #pragma once
 
-#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
-#include <utility>
-#include <vector>
 
-#include "fpbm/bound/bounds.hpp"
-#include "fpbm/bound/detail/gap_rows.hpp"
-#include "fpbm/bound/detail/joint_axes.hpp"
-#include "fpbm/bound/detail/kept_fraction.hpp"
-#include "fpbm/bound/detail/link_vector.hpp"
-#include "fpbm/model/robot.hpp"
+#include "fpbm/bound/detail/coordinate_bounds.hpp"
 
 namespace fpbm {
 
-/// Throws std::invalid_argument if a vector is zero or not finite. Returns the vector with the length 1.
-template <typename Scalar>
-[[nodiscard]] Vector<3, Scalar> unit_vector(const char* name, const Vector<3, Scalar>& vector) {
-  validation::require_finite(name, vector);
-  const Scalar length = vector.stableNorm();
-  if (!(length > Scalar(0))) validation::fail(name, Scalar(0), "a nonzero vector");
-  return vector / length;
-}
-
 /// Bound of a Tracker: walls (PositionBounds) and cones (AxisBounds), which hold at every tick.
-///
-/// A wall or a cone is a lower bound n·x ≥ offset on a coordinate of a point of a link, or of a unit vector fixed to a
-/// link. The gap n·x − offset has rows like the distance of two shapes (GapRows), and the same certificate
-/// (kept_fraction()).
-template <int N, typename Scalar_ = double, int Joints = N>
-class TaskBounds {
+template <int N, typename Scalar = double, int Joints = N>
+class TaskBounds : public CoordinateBounds<N, Scalar, Joints> {
  public:
-  using Scalar = Scalar_;
-  using JointVector = Vector<N, Scalar>;
-  using Vector3 = Vector<3, Scalar>;
-  static constexpr int kRows = 8;
-  static constexpr Status kStatus = Status::kBlocked;
-
-  /// The bound n·x ≥ offset.
-  struct Coordinate {
-    LinkVector<Joints, Scalar> x;
-    Vector3 n;
-    Scalar offset;
-    Scalar deceleration;  ///< Largest deceleration toward the bound [m/s²], or [1/s²] of a direction.
-    std::string name;
-  };
-
   /// source: the Tree or the Chain of the robot.
   template <typename Source>
-  explicit TaskBounds(const Source& source) : robot_(source), levers_(source) {}
+  explicit TaskBounds(const Source& source) : CoordinateBounds<N, Scalar, Joints>(source) {}
 
-  /// Adds PositionBounds or AxisBounds. Throws the errors of add_to().
+  /// Adds PositionBounds or AxisBounds. Throws std::invalid_argument if a bound is out of range, or the link does not
+  /// exist.
   template <typename Given>
   void keep(const Given& bounds) {
     bounds.add_to(*this);
   }
-  /// Throws std::invalid_argument unless the deceleration is positive.
-  void add(Coordinate coordinate) {
-    if (!(coordinate.deceleration > Scalar(0))) {
-      validation::fail("deceleration", coordinate.deceleration, "positive, or infinite");
-    }
-    coordinates_.push_back(std::move(coordinate));
-    open_.resize(coordinates_.size());
-  }
-  /// The origin of a frame. Throws std::invalid_argument if the link does not exist.
-  [[nodiscard]] LinkVector<Joints, Scalar> point(const LinkFrame<Scalar>& frame) const {
-    return LinkVector<Joints, Scalar>::point(robot_, levers_, frame);
-  }
-  /// An axis of a frame, a unit vector in the frame. Throws std::invalid_argument if the link does not exist.
-  [[nodiscard]] LinkVector<Joints, Scalar> direction(const LinkFrame<Scalar>& frame, const Vector3& axis) const {
-    return LinkVector<Joints, Scalar>::direction(robot_, frame, axis);
-  }
+};
 
-  [[nodiscard]] const std::vector<Coordinate>& coordinates() const noexcept { return coordinates_; }
-  [[nodiscard]] bool empty() const noexcept { return coordinates_.empty(); }
+/// Bounds on the position p of the origin of a frame in the base frame, for each coordinate:
+///
+///   lowerᵢ ≤ pᵢ ≤ upperᵢ
+template <typename Scalar = double>
+struct PositionBounds {
+  static constexpr Scalar kNone = std::numeric_limits<Scalar>::infinity();
 
-  /// Throws std::invalid_argument with the name of the bound if the posture q is beyond a bound.
-  void require(const JointVector& q) {
-    validation::require_size("joints of the task bounds", robot_.dof(), q.size());
-    place(q);
-    const auto least = std::min_element(coordinates_.begin(), coordinates_.end(),
-                                        [&](const auto& a, const auto& b) { return gap_of(a) < gap_of(b); });
-    if (least != coordinates_.end() && !(gap_of(*least) >= Scalar(0))) {
-      validation::reject("q0", ": is beyond the bound '" + least->name + "': must be within the task bounds");
+  LinkFrame<Scalar> frame;
+  Vector<3, Scalar> lower = Vector<3, Scalar>::Constant(-kNone);  ///< [m]
+  Vector<3, Scalar> upper = Vector<3, Scalar>::Constant(kNone);   ///< [m]
+  Scalar deceleration = kNone;                                    ///< Largest deceleration toward the bounds [m/s²].
+  std::string name = "tip";
+
+  /// Throws std::invalid_argument if a bound is out of range, or the link does not exist.
+  template <int N, int Joints>
+  void add_to(CoordinateBounds<N, Scalar, Joints>& bounds) const {
+    const auto point = bounds.point(frame);
+    for (int i = 0; i < 3; ++i) {
+      if (!(lower(i) < upper(i))) validation::fail(validation::element("lower", i), lower(i), "below upper");
+      const std::string axis(1, "xyz"[i]);
+      const Vector<3, Scalar> n = Vector<3, Scalar>::Unit(i);
+      if (std::isfinite(lower(i))) bounds.add({point, n, lower(i), deceleration, "lower " + axis + " of " + name});
+      if (std::isfinite(upper(i))) bounds.add({point, -n, -upper(i), deceleration, "upper " + axis + " of " + name});
     }
   }
+};
 
-  template <Level kLevel, int P>
-  void rows(const NextMotion<kLevel, N, Scalar>& next, Rows<N, P, Scalar>& rows) noexcept {
-    const auto& drives = robot_.drives();
-    const Motion motion(drives, next);
-    const AllJoints fastest = drives.rates(Gaps::fastest(next, motion)).cwiseAbs() + motion.stop.deviation;
-    const JointVector middle = motion.middle(next.state);
-    place(middle);
-    gaps_.begin(rows.count);
-    const Eigen::Index before = rows.count;
-    for (const Coordinate& each : coordinates_) {
-      const Scalar gap = gap_of(each);
-      const auto bound = displacement_of(each, motion.stop);
-      const Scalar range = bound.c0 + bound.c1 + bound.c2 + each.x.levers.dot(fastest);
-      if (!std::isfinite(each.deceleration) && gap >= range) continue;
-      const AllJoints gradient = gradient_of(each);
-      gaps_.add({gap, Gaps::slack_of(gap, gradient, bound, motion), gap + gradient.dot(motion.stop.line), Scalar(0),
-                 each.deceleration},
-                drives.by_drive(gradient), &each, motion, rows);
-    }
-    if (rows.count == before) return;
-    place(JointVector(middle + motion.line));
-    gaps_.finish(next, motion, rows, [&](const Coordinate* each) noexcept { return gap_of(*each); });
-  }
+/// Bounds on the angle θ between an axis a of a frame and a direction d (a cone about d):
+///
+///   lower ≤ θ ≤ upper
+///
+/// cos θ = d·a is the coordinate along d of the unit vector a.
+template <typename Scalar = double>
+struct AxisBounds {
+  static constexpr Scalar kNone = std::numeric_limits<Scalar>::infinity();
 
-  /// By conservative advancement, as in Advancement.
-  template <Level kLevel>
-  [[nodiscard]] bool accepts(const State<N, Scalar>& from, const Stop<kLevel, N, Scalar>& stop) noexcept {
-    const StoppingMotion<Joints, Scalar> motion(robot_.drives(), stop.displacement, stop.time);
-    if (!motion.displacement.line.allFinite() || !motion.displacement.deviation.allFinite()) return false;
-    Scalar done(0);
-    place(from.q);
-    for (std::size_t i = 0; i < open_.size(); ++i) {
-      open_[i] = {Scalar(0), displacement_of(coordinates_[i], motion.displacement)};
-    }
-    for (int advance = 0; advance < kAdvances; ++advance) {
-      const Scalar remaining = Scalar(1) - done;
-      Scalar until(1);
-      for (std::size_t i = 0; i < open_.size(); ++i) {
-        auto& [proved, bound] = open_[i];
-        if (!(proved < Scalar(1))) continue;
-        const Scalar fraction = proved_fraction(coordinates_[i], bound, motion, remaining);
-        proved = fraction == remaining ? Scalar(1) : std::max(proved, done + fraction);
-        until = std::min(proved, until);
-      }
-      if (until == Scalar(1)) return true;
-      if (!(until > done)) return false;
-      done = until;
-      place(JointVector(from.q + done * stop.displacement.line));
-    }
-    return false;
-  }
+  LinkFrame<Scalar> frame;
+  Vector<3, Scalar> axis = Vector<3, Scalar>::UnitZ();  ///< In the frame. Any positive length.
+  Vector<3, Scalar> direction;                          ///< In the base frame. Any positive length.
+  Scalar lower = Scalar(0);                             ///< [rad]
+  Scalar upper = kNone;                                 ///< [rad]; no bound if π or more.
+  Scalar deceleration = kNone;                          ///< Largest deceleration of cos θ toward the bounds [1/s²].
+  std::string name = "axis";
 
- private:
-  /// As in Advancement.
-  static constexpr int kAdvances = 8;
-  using AllJoints = Vector<Joints, Scalar>;
-  using Motion = GapMotion<N, Joints, Scalar>;
-  using Gaps = GapRows<kRows, N, Joints, Scalar, const Coordinate*>;
-
-  /// Fraction of a stopping trajectory until which a bound is proved, and the displacement bound of the coordinate.
-  struct Open {
-    Scalar proved;
-    DisplacementBound<Scalar> bound;
-  };
-
-  void place(const JointVector& q) noexcept {
-    robot_.update(q, state_);
-    axes_.set(robot_, state_);
+  /// Throws std::invalid_argument if a bound is out of range, or the link does not exist.
+  template <int N, int Joints>
+  void add_to(CoordinateBounds<N, Scalar, Joints>& bounds) const {
+    const auto a = bounds.direction(frame, unit_vector("axis", axis));
+    const Vector<3, Scalar> d = unit_vector("direction", direction);
+    validation::require_non_negative("lower", lower);
+    if (!(lower < upper)) validation::fail("lower", lower, "below upper");
+    constexpr Scalar kHalfTurn = Scalar(3.14159265358979323846);
+    if (upper < kHalfTurn) bounds.add({a, d, std::cos(upper), deceleration, "largest angle of " + name});
+    if (lower > Scalar(0)) bounds.add({a, -d, -std::cos(lower), deceleration, "least angle of " + name});
   }
-  [[nodiscard]] Scalar gap_of(const Coordinate& each) const noexcept {
-    return each.n.dot(each.x.in_base(state_)) - each.offset;
-  }
-  [[nodiscard]] AllJoints gradient_of(const Coordinate& each) const noexcept {
-    return axes_.gradient(each.n, each.x.in_base(state_), each.x.moved_by, each.x.is_direction);
-  }
-  [[nodiscard]] DisplacementBound<Scalar> displacement_of(
-      const Coordinate& each, const JointDisplacement<Joints, Scalar>& displacement) const noexcept {
-    DisplacementBound<Scalar> bound;
-    bound.add(robot_, each.x.levers, each.x.moved_by, displacement);
-    return bound;
-  }
-
-  /// Fraction of the trajectory, at most `remaining`, in which the bound is proved. Beyond the bound, the coordinate
-  /// must not move on.
-  [[nodiscard]] Scalar proved_fraction(const Coordinate& each, const DisplacementBound<Scalar>& bound,
-                                       const StoppingMotion<Joints, Scalar>& motion, Scalar remaining) const noexcept {
-    const Scalar gap = gap_of(each);
-    if (gap >= bound.displacement(remaining)) return remaining;
-    const AllJoints gradient = gradient_of(each);
-    if (gap < -kIntrusion<Scalar> && remaining == Scalar(1)) {
-      const auto& p = motion.displacement;
-      return gradient.dot(p.line) + p.least(gradient) >= Scalar(0) ? remaining : Scalar(0);
-    }
-    return kept_fraction(gap, gradient, bound, motion, remaining);
-  }
-
-  Robot<N, Scalar, Joints> robot_;
-  Levers<Scalar> levers_;
-  std::vector<Coordinate> coordinates_;
-  typename Robot<N, Scalar, Joints>::State state_;  ///< In the posture of place().
-  JointAxes<Joints, Scalar> axes_;
-  Gaps gaps_;
-  std::vector<Open> open_;  ///< Memory of accepts().
 };
 
 }  // namespace fpbm

@@ -7,6 +7,9 @@
 
 namespace fpbm {
 
+/// Output of a scheme: joint velocities or joint accelerations.
+enum class Level : unsigned char { kVelocity, kAcceleration };
+
 /// Largest number of joints of an arm whose number of joints is known at run time (N = Eigen::Dynamic): the number of
 /// bits of JointBits.
 inline constexpr int kMaxDof = 64;

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "fpbm/core/detail/validation.hpp"
-#include "fpbm/core/level.hpp"
+#include "fpbm/core/types.hpp"
 #include "fpbm/limits/detail/box.hpp"
 #include "fpbm/limits/detail/jerk_limited_joint.hpp"
 #include "fpbm/limits/detail/usable_bounds.hpp"

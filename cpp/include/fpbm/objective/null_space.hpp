@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "fpbm/core/detail/validation.hpp"
-#include "fpbm/core/level.hpp"
+#include "fpbm/core/types.hpp"
 #include "fpbm/linalg/detail/entrywise.hpp"
 #include "fpbm/model/detail/continuous_joints.hpp"
 #include "fpbm/model/joint.hpp"

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "fpbm/core/level.hpp"
+#include "fpbm/core/types.hpp"
 #include "fpbm/geometry/space.hpp"
 #include "fpbm/objective/null_space.hpp"
 #include "fpbm/scheme/detail/least_norm.hpp"

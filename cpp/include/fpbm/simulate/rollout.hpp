@@ -4,7 +4,7 @@
 
 #include "fpbm/core/detail/mask.hpp"
 #include "fpbm/core/detail/validation.hpp"
-#include "fpbm/core/level.hpp"
+#include "fpbm/core/types.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/model/detail/continuous_joints.hpp"
 #include "fpbm/model/kinematics.hpp"

@@ -6,7 +6,6 @@
 #include <type_traits>
 
 #include "fpbm/core/detail/mask.hpp"
-#include "fpbm/core/level.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/geometry/space.hpp"
 #include "fpbm/model/manipulability.hpp"

@@ -78,7 +78,7 @@ struct Gap {
 /// s < c, the gap must open: ṡ ≥ (c − s)/(κ (T − kSoft)).
 ///
 /// add() stores a gap with its gradient. The kMost gaps with the smallest slack are kept. finish() subtracts the
-/// second-order change of each gap at the end of the stop, and writes the rows gᵀu ≤ b. Tag: what the caller needs for
+/// second-order change of each gap at the end of the stop, and writes the rows gᵀu ≤ b. Tag: data of the caller, for
 /// the gap at the end of the stop.
 template <int kMost, int N, int Joints, typename Scalar, typename Tag>
 class GapRows {

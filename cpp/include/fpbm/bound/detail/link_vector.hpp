@@ -56,4 +56,13 @@ struct LinkVector {
   }
 };
 
+/// Throws std::invalid_argument if a vector is zero or not finite. Returns the vector with the length 1.
+template <typename Scalar>
+[[nodiscard]] Vector<3, Scalar> unit_vector(const char* name, const Vector<3, Scalar>& vector) {
+  validation::require_finite(name, vector);
+  const Scalar length = vector.stableNorm();
+  if (!(length > Scalar(0))) validation::fail(name, Scalar(0), "a nonzero vector");
+  return vector / length;
+}
+
 }  // namespace fpbm

@@ -67,8 +67,8 @@ class PairRows {
   using Motion = GapMotion<N, kJoints, Scalar>;
 
   /// Part of the displacement of a moving obstacle, in the time by which bounds on jerk delay the arm, that the rows
-  /// keep beyond the margin. In Bounds.keeps_the_margin_of_a_moving_obstacle with bounds on jerk J = 20 A, the arm comes
-  /// closer by at most 0.005 of this displacement without this reserve.
+  /// keep beyond the margin. In Bounds.keeps_the_margin_of_a_moving_obstacle with bounds on jerk J = 20 A, the arm
+  /// comes closer by at most 0.005 of this displacement without this reserve.
   static constexpr Scalar kLagging = Scalar(0.01);
 
   /// Adds the row of a pair, or the rows of both ends of its first capsule. bound: displacement bounds of the stop.

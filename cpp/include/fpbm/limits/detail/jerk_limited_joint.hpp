@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "fpbm/core/detail/quickest_stop.hpp"
-#include "fpbm/core/level.hpp"
+#include "fpbm/core/types.hpp"
 #include "fpbm/limits/detail/velocity_envelope.hpp"
 
 namespace fpbm {

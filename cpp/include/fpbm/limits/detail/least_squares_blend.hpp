@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "fpbm/core/level.hpp"
+#include "fpbm/core/types.hpp"
 #include "fpbm/limits/detail/box.hpp"
 #include "fpbm/limits/detail/box_least_squares.hpp"
 #include "fpbm/limits/detail/rows.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fpbm/core/level.hpp"
+#include "fpbm/core/types.hpp"
 
 namespace fpbm {
 

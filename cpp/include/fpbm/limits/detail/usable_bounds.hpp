@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "fpbm/core/detail/validation.hpp"
-#include "fpbm/core/level.hpp"
+#include "fpbm/core/types.hpp"
 #include "fpbm/model/joint.hpp"
 
 namespace fpbm {

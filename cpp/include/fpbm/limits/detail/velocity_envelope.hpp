@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "fpbm/core/detail/quickest_stop.hpp"
-#include "fpbm/core/level.hpp"
 #include "fpbm/core/types.hpp"
 
 namespace fpbm {

@@ -4,7 +4,7 @@
 
 #include "fpbm/core/detail/parts.hpp"
 #include "fpbm/core/detail/validation.hpp"
-#include "fpbm/core/level.hpp"
+#include "fpbm/core/types.hpp"
 #include "fpbm/geometry/detail/joint_space.hpp"
 #include "fpbm/linalg/detail/sums.hpp"
 #include "fpbm/path/reference.hpp"

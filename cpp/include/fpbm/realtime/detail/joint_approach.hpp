@@ -8,7 +8,7 @@
 #include <type_traits>
 
 #include "fpbm/core/detail/parts.hpp"
-#include "fpbm/core/level.hpp"
+#include "fpbm/core/types.hpp"
 #include "fpbm/geometry/detail/joint_space.hpp"
 #include "fpbm/limits/limits.hpp"
 #include "fpbm/task/detail/task_gains.hpp"

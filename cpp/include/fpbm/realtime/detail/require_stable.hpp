@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "fpbm/core/detail/validation.hpp"
-#include "fpbm/core/level.hpp"
+#include "fpbm/core/types.hpp"
 #include "fpbm/simulate/detail/stability.hpp"
 #include "fpbm/task/detail/task_gains.hpp"
 

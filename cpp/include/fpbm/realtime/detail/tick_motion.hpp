@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fpbm/core/level.hpp"
+#include "fpbm/core/types.hpp"
 #include "fpbm/linalg/detail/entrywise.hpp"
 
 namespace fpbm {

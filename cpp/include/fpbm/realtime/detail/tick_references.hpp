@@ -3,7 +3,7 @@
 #include <array>
 
 #include "fpbm/core/detail/mask.hpp"
-#include "fpbm/core/level.hpp"
+#include "fpbm/core/types.hpp"
 #include "fpbm/path/reference.hpp"
 
 namespace fpbm {

@@ -3,7 +3,7 @@
 #include <tuple>
 #include <utility>
 
-#include "fpbm/core/level.hpp"
+#include "fpbm/core/types.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/geometry/space.hpp"
 #include "fpbm/linalg/detail/level_space.hpp"

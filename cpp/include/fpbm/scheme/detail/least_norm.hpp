@@ -3,7 +3,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "fpbm/core/level.hpp"
+#include "fpbm/core/types.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/linalg/detail/product.hpp"
 #include "fpbm/linalg/detail/sums.hpp"

@@ -4,7 +4,7 @@
 #include <type_traits>
 
 #include "fpbm/core/detail/unrolled.hpp"
-#include "fpbm/core/level.hpp"
+#include "fpbm/core/types.hpp"
 #include "fpbm/linalg/detail/product.hpp"
 #include "fpbm/linalg/detail/self_motion.hpp"
 #include "fpbm/linalg/detail/sums.hpp"

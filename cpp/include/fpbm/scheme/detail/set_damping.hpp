@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "fpbm/core/detail/mask.hpp"
-#include "fpbm/core/level.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/singular/damping.hpp"
 

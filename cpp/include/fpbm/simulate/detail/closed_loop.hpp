@@ -3,7 +3,7 @@
 #include <type_traits>
 
 #include "fpbm/core/detail/parts.hpp"
-#include "fpbm/core/level.hpp"
+#include "fpbm/core/types.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/linalg/detail/entrywise.hpp"
 #include "fpbm/model/kinematics.hpp"

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "fpbm/core/detail/mask.hpp"
-#include "fpbm/core/level.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/path/reference.hpp"
