@@ -24,12 +24,12 @@ class CompiledTracker {
   using JointState = State<N, Scalar>;
   using Result = Tick<Space, N, Scalar>;
   using Options = TrackerOptions<Scalar>;
-  using JointLimits = Limits<kLevel, N, Scalar>;
+  using MotionLimits = Limits<kLevel, N, Scalar>;
 
   CompiledTracker(const Arm& arm, Space, const Scheme& scheme, const JointState& start, const Options& options,
-                  const JointLimits& limits);
+                  const MotionLimits& limits);
   CompiledTracker(const Arm& arm, Space, const Scheme& scheme, const JointState& start, const Options& options,
-                  const JointLimits& limits, const JointVector& acceleration);
+                  const MotionLimits& limits, const JointVector& acceleration);
   CompiledTracker(const Arm& arm, Space, const Scheme& scheme, const JointState& start, const Options& options = {});
   CompiledTracker(const Arm& arm, Space, const Scheme& scheme, const JointVector& q0, const Options& options = {});
   CompiledTracker(CompiledTracker&&) noexcept;
@@ -51,7 +51,7 @@ class CompiledTracker {
   [[nodiscard]] const Arm& arm() const noexcept;
   [[nodiscard]] typename Space::template Point<Scalar> tip() const noexcept;
   /// Calls limits.require_viable() for the current state and acceleration, from which another tracker could start.
-  void require_viable(const JointLimits& limits) const;
+  void require_viable(const MotionLimits& limits) const;
 
  private:
   std::unique_ptr<Tracker<Arm, Space, Scheme, Bounds_>> tracker_;

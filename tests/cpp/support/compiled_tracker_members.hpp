@@ -10,13 +10,13 @@ namespace fpbm::test {
 template <typename Arm, typename Space, typename Scheme, typename Bounds_>
 CompiledTracker<Arm, Space, Scheme, Bounds_>::CompiledTracker(const Arm& arm, Space space, const Scheme& scheme,
                                                               const JointState& start, const Options& options,
-                                                              const JointLimits& limits)
+                                                              const MotionLimits& limits)
     : tracker_(std::make_unique<Tracker<Arm, Space, Scheme, Bounds_>>(arm, space, scheme, start, options, limits)) {}
 
 template <typename Arm, typename Space, typename Scheme, typename Bounds_>
 CompiledTracker<Arm, Space, Scheme, Bounds_>::CompiledTracker(const Arm& arm, Space space, const Scheme& scheme,
                                                               const JointState& start, const Options& options,
-                                                              const JointLimits& limits,
+                                                              const MotionLimits& limits,
                                                               const JointVector& acceleration)
     : tracker_(std::make_unique<Tracker<Arm, Space, Scheme, Bounds_>>(arm, space, scheme, start, options, limits,
                                                                       acceleration)) {}
@@ -101,7 +101,7 @@ auto CompiledTracker<Arm, Space, Scheme, Bounds_>::tip() const noexcept -> typen
 }
 
 template <typename Arm, typename Space, typename Scheme, typename Bounds_>
-void CompiledTracker<Arm, Space, Scheme, Bounds_>::require_viable(const JointLimits& limits) const {
+void CompiledTracker<Arm, Space, Scheme, Bounds_>::require_viable(const MotionLimits& limits) const {
   limits.require_viable(tracker_->state(), tracker_->acceleration());
 }
 

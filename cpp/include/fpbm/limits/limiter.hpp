@@ -6,12 +6,12 @@
 
 #include "fpbm/limits/detail/box_in_time.hpp"
 #include "fpbm/limits/detail/braking.hpp"
+#include "fpbm/limits/detail/goals.hpp"
 #include "fpbm/limits/detail/inverse_task_metric.hpp"
 #include "fpbm/limits/detail/least_squares_blend.hpp"
 #include "fpbm/limits/detail/one_level.hpp"
 #include "fpbm/limits/detail/reserved_limits.hpp"
 #include "fpbm/limits/detail/row_projection.hpp"
-#include "fpbm/limits/detail/tick_motions.hpp"
 #include "fpbm/limits/detail/toward_goal.hpp"
 #include "fpbm/limits/limits.hpp"
 #include "fpbm/linalg/detail/product.hpp"
@@ -64,7 +64,7 @@ class Limiter {
   /// Motion within the limits for a desired qdd [rad/s²], or qd [rad/s] at velocity level, where state.qd is the last
   /// command. `last`: acceleration of the last tick [rad/s²], used by bounds on jerk.
   ///
-  /// tasks: Jacobian of one task level, or TaskLevels, which are saturated level by level (SaturationByLevel). rows:
+  /// tasks: Jacobian of one task level, or TaskLevels, which are saturated level by level (StackSaturation). rows:
   /// further bounds on the motion (RowProjection), kept as far as the limits admit.
   template <typename Tasks, int P = 0>
   [[nodiscard]] Result<Tasks> motion(const Tasks& tasks, const JointState& state, const JointVector& desired,

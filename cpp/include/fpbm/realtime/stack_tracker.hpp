@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fpbm/limits/detail/saturation_by_level.hpp"
+#include "fpbm/limits/detail/stack_saturation.hpp"
 #include "fpbm/realtime/detail/lower_levels.hpp"
 #include "fpbm/realtime/detail/require_stable.hpp"
 #include "fpbm/realtime/detail/stack_tick.hpp"

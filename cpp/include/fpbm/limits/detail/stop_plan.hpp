@@ -43,13 +43,13 @@ template <Level kLevel, int N, typename Scalar = double>
 class StopPlan {
  public:
   using JointVector = Vector<N, Scalar>;
-  using JointLimits = Limits<kLevel, N, Scalar>;
+  using MotionLimits = Limits<kLevel, N, Scalar>;
 
   /// Plan of an arm at rest.
   explicit StopPlan(Eigen::Index dof) : last_(JointVector::Zero(dof)), velocity_(JointVector::Zero(dof)) {}
 
   /// Plan from a viable state after a tick with the acceleration `last`.
-  StopPlan(const JointLimits& limits, const State<N, Scalar>& state, const JointVector& last) noexcept
+  StopPlan(const MotionLimits& limits, const State<N, Scalar>& state, const JointVector& last) noexcept
       : last_(last), velocity_(state.qd) {
     const Scalar h = limits.tick();
     const auto& bounds = limits.bounds();
@@ -70,7 +70,7 @@ class StopPlan {
 
   /// Displacement bounds from the state `before` the last tick until rest. start: state after the last tick, at the
   /// start of the plan.
-  [[nodiscard]] StopDisplacement<N, Scalar> displacement(const JointLimits& limits, const State<N, Scalar>& before,
+  [[nodiscard]] StopDisplacement<N, Scalar> displacement(const MotionLimits& limits, const State<N, Scalar>& before,
                                                          const State<N, Scalar>& start) const noexcept {
     using std::abs;
     const Eigen::Index n = last_.size();
@@ -100,7 +100,7 @@ class StopPlan {
 
   /// Accelerations of the next tick of the plan. state: state at the start of the tick. before: accelerations of the
   /// last tick. Advances the plan by one tick.
-  [[nodiscard]] JointVector next(const JointLimits& limits, const State<N, Scalar>& state,
+  [[nodiscard]] JointVector next(const MotionLimits& limits, const State<N, Scalar>& state,
                                  const JointVector& before) noexcept {
     const Scalar h = limits.tick();
     JointVector u(before.size());
@@ -123,7 +123,7 @@ class StopPlan {
   [[nodiscard]] Scalar coasting_ticks() const noexcept { return profile_.coasting_ticks(kLevel); }
 
   /// coasting_ticks() without rounding to whole ticks, approximately: a continuous function of the state.
-  [[nodiscard]] Scalar smooth_coasting_ticks(const JointLimits& limits) const noexcept {
+  [[nodiscard]] Scalar smooth_coasting_ticks(const MotionLimits& limits) const noexcept {
     using std::abs;
     Scalar most(0);
     for (Eigen::Index i = 0; i < velocity_.size(); ++i) {
@@ -140,7 +140,7 @@ class StopPlan {
 
   /// Change of the velocity due to an acceleration u of the next tick, until u has decreased to zero, divided by h u:
   /// 1 for the tick itself, plus (r − 1)/2 for a ramp of r ticks. r is the largest A/(h J) of all joints, rounded up.
-  [[nodiscard]] static Scalar acting_ticks(const JointLimits& limits) noexcept {
+  [[nodiscard]] static Scalar acting_ticks(const MotionLimits& limits) noexcept {
     Scalar most(0);
     for (Eigen::Index i = 0; i < limits.bounds().jerk.size(); ++i) {
       if (!limits.bounds_jerk(i)) continue;
@@ -181,7 +181,7 @@ class StopPlan {
   /// Whether joint i keeps its bounds in the synchronised stop. Sufficient condition: the joint keeps its bounds if it
   /// coasts at its largest velocity until the full deceleration begins, and then brakes at the full deceleration. The
   /// synchronised stop is neither faster nor longer.
-  [[nodiscard]] bool keeps_bounds(const JointLimits& limits, Eigen::Index i,
+  [[nodiscard]] bool keeps_bounds(const MotionLimits& limits, Eigen::Index i,
                                   const State<N, Scalar>& start) const noexcept {
     using std::abs;
     const Scalar after_ramp = velocity_(i);
@@ -194,7 +194,7 @@ class StopPlan {
   }
 
   /// Acceleration of the next tick in the shortest stop of joint i alone.
-  [[nodiscard]] static Scalar quickest(const JointLimits& limits, Eigen::Index i, const State<N, Scalar>& state,
+  [[nodiscard]] static Scalar quickest(const MotionLimits& limits, Eigen::Index i, const State<N, Scalar>& state,
                                        const JointVector& before) noexcept {
     const Scalar most = limits.bounds().acceleration(i);
     if (!limits.bounds_jerk(i)) return std::clamp(-state.qd(i) / limits.tick(), -most, most);
@@ -206,7 +206,7 @@ class StopPlan {
   }
 
   /// Bounds on the displacement in the shortest stop of joint i alone [rad] or [m].
-  [[nodiscard]] Interval<Scalar> single_stop_displacement(const JointLimits& limits, Eigen::Index i,
+  [[nodiscard]] Interval<Scalar> single_stop_displacement(const MotionLimits& limits, Eigen::Index i,
                                                           Scalar qd) const noexcept {
     using std::abs;
     const Scalar h = limits.tick();

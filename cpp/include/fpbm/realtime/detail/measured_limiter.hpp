@@ -39,10 +39,10 @@ class MeasuredLimiter {
   static constexpr Level kLevel = Level::kAcceleration;
   using JointVector = Vector<N, Scalar>;
   using JointState = State<N, Scalar>;
-  using JointLimits = Limits<kLevel, N, Scalar>;
+  using MotionLimits = Limits<kLevel, N, Scalar>;
 
   /// Throws std::invalid_argument if the delay d is not in [0, kMaxMeasuredDelay].
-  MeasuredLimiter(const JointLimits& limits, int delay)
+  MeasuredLimiter(const MotionLimits& limits, int delay)
       : delayed_(delay > 0),
         limiter_(delayed_ ? slower(limits, horizon(limits, delay)) : limits),
         unit_(limits.bounds().acceleration),
@@ -57,7 +57,7 @@ class MeasuredLimiter {
   }
 
   /// Limits for measured states: with the tick H, or the given limits if d = 0.
-  [[nodiscard]] const JointLimits& limits() const noexcept { return limiter_.limits(); }
+  [[nodiscard]] const MotionLimits& limits() const noexcept { return limiter_.limits(); }
 
   /// As Limiter::motion().
   template <typename Tasks, int P>
@@ -100,7 +100,7 @@ class MeasuredLimiter {
  private:
   /// H (docs/tick.md, Delay of measured states, The tick H). The gain of the velocity feedback is
   /// β = (T + H)/(H (T + H/2)), at most 1.172/H.
-  [[nodiscard]] static Scalar horizon(const JointLimits& limits, int delay) {
+  [[nodiscard]] static Scalar horizon(const MotionLimits& limits, int delay) {
     const auto d = static_cast<Scalar>(delay);
     const Scalar gain = std::pow(d / (d + Scalar(1)), d) / (d + Scalar(1));  // g
     Scalar longest = std::max(kMargin * limits.tick() / gain, kQuiet);
@@ -115,8 +115,8 @@ class MeasuredLimiter {
   [[nodiscard]] static Scalar offset(Scalar D, Scalar H) noexcept { return D + H * H / (Scalar(2) * (D - H)); }
 
   /// Limits with the tick H that keep the envelopes of the given limits, but have no bounds on jerk.
-  [[nodiscard]] static JointLimits slower(const JointLimits& limits, Scalar H) {
-    fpbm::JointLimits<N, Scalar> bounds = limits.bounds();
+  [[nodiscard]] static MotionLimits slower(const MotionLimits& limits, Scalar H) {
+    JointLimits<N, Scalar> bounds = limits.bounds();
     for (Eigen::Index i = 0; i < bounds.lower.size(); ++i) {
       JointBounds<Scalar> joint = bounds.joint(i);
       joint.jerk = JointBounds<Scalar>::kNone;
@@ -179,8 +179,8 @@ class MeasuredLimiter {
 
 /// Replaces MeasuredLimiter for schemes that return velocities.
 struct NoMeasuredLimiter {
-  template <typename JointLimits>
-  NoMeasuredLimiter(const JointLimits&, int delay) {
+  template <typename MotionLimits>
+  NoMeasuredLimiter(const MotionLimits&, int delay) {
     require_measured_delay(delay);
   }
 };

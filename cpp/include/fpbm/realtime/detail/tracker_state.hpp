@@ -25,12 +25,12 @@ struct TrackerState {
   using Target = Reference<Space, Scalar>;
   using JointVector = Vector<N, Scalar>;
   using JointState = State<N, Scalar>;
-  using JointLimits = Limits<kLevel, N, Scalar>;
+  using MotionLimits = Limits<kLevel, N, Scalar>;
   using Result = Tick<Space, N, Scalar>;
 
   /// start: state after a tick with the acceleration qdd0. continuous: bits of the continuous joints. Throws
   /// std::invalid_argument if an option is out of range.
-  TrackerState(const TrackerOptions<Scalar>& options, const JointLimits& limits_, const JointState& start,
+  TrackerState(const TrackerOptions<Scalar>& options, const MotionLimits& limits_, const JointState& start,
                const JointVector& qdd0, const Bounds_& bounds_, JointBits continuous_)
       : tick{{options.dt}, start, qdd0, filled<JointVector>(qdd0.size())},
         correction(options),
@@ -59,7 +59,7 @@ struct TrackerState {
   bool stopping = false;
 
   [[nodiscard]] Scalar dt() const noexcept { return tick.motion.dt; }
-  [[nodiscard]] const JointLimits& limits() const noexcept { return limiter.limits(); }
+  [[nodiscard]] const MotionLimits& limits() const noexcept { return limiter.limits(); }
   /// Whether the arm stops and keeps the first level.
   [[nodiscard]] bool keeps_stopping() const noexcept { return stopping && keeps_first_level; }
   /// Whether each joint brakes by itself. A stop that keeps the first level moves the joints together.
@@ -109,7 +109,7 @@ struct TrackerState {
   /// Rows of the bounds for a tick with the desired motion u.
   [[nodiscard]] auto rows(const JointVector& u) noexcept { return rows(limits(), tick.joints, u); }
   /// Rows for a motion from `joints` within `joint_limits`. The motion lasts at least the given fraction of a tick.
-  [[nodiscard]] auto rows(const JointLimits& joint_limits, const JointState& joints, const JointVector& u,
+  [[nodiscard]] auto rows(const MotionLimits& joint_limits, const JointState& joints, const JointVector& u,
                           Scalar least_fraction = Scalar(1)) noexcept {
     return bounds.rows(NextMotion<kLevel, N, Scalar>{joint_limits, joints, u, stop, acting_ticks, least_fraction});
   }

@@ -23,15 +23,15 @@ namespace fpbm {
 /// higher level is 1, d = u*. In lost directions, the pseudoinverse is damped (ScaledLevel, DampedLevel, kLevelRadius).
 /// NullSpaceSaturation resolves the first level, with the task J₁ u* and the null-space motion of u*.
 template <int N, typename Scalar, int P, typename... Matrices>
-class SaturationByLevel {
+class StackSaturation {
  public:
   using JointVector = Vector<N, Scalar>;
   static constexpr int kLevels = static_cast<int>(sizeof...(Matrices));
   using Result = SaturatedLevels<N, Scalar, kLevels>;
 
   /// unit: unit of each joint's motion, for example its bound on acceleration.
-  SaturationByLevel(const TaskLevels<N, Scalar, Matrices...>& levels, const JointVector& unit,
-                    const Rows<N, P, Scalar>& rows = {}) noexcept
+  StackSaturation(const TaskLevels<N, Scalar, Matrices...>& levels, const JointVector& unit,
+                  const Rows<N, P, Scalar>& rows = {}) noexcept
       : levels_(levels),
         unit_(unit),
         rows_(rows),
@@ -134,14 +134,14 @@ class SaturationByLevel {
 
 /// saturation_of() for several levels.
 template <int N, typename Scalar, int P, typename... Matrices>
-[[nodiscard]] SaturationByLevel<N, Scalar, P, Matrices...> saturation_of(
-    const TaskLevels<N, Scalar, Matrices...>& levels, const Vector<N, Scalar>& unit,
-    const Rows<N, P, Scalar>& rows) noexcept {
+[[nodiscard]] StackSaturation<N, Scalar, P, Matrices...> saturation_of(const TaskLevels<N, Scalar, Matrices...>& levels,
+                                                                       const Vector<N, Scalar>& unit,
+                                                                       const Rows<N, P, Scalar>& rows) noexcept {
   return {levels, unit, rows};
 }
 
 template <int N, typename Scalar, int P, typename... Matrices>
-void resolve_lower(const SaturationByLevel<N, Scalar, P, Matrices...>& saturation, const Box<N, Scalar>& box,
+void resolve_lower(const StackSaturation<N, Scalar, P, Matrices...>& saturation, const Box<N, Scalar>& box,
                    const Vector<N, Scalar>& desired, SaturatedLevels<N, Scalar, sizeof...(Matrices)>& found) noexcept {
   saturation.resolve_lower(box, desired, found);
 }
