@@ -52,6 +52,25 @@ inline constexpr bool kHasEmpty = false;
 template <typename Bound>
 inline constexpr bool kHasEmpty<Bound, std::void_t<decltype(std::declval<const Bound&>().empty())>> = true;
 
+template <typename Bound, typename JointVector, typename = void>
+inline constexpr bool kHasRequire = false;
+template <typename Bound, typename JointVector>
+inline constexpr bool kHasRequire<
+    Bound, JointVector, std::void_t<decltype(std::declval<Bound&>().require(std::declval<const JointVector&>()))>> =
+    true;
+template <typename Bound, typename Next, typename Rows_, typename = void>
+inline constexpr bool kWritesRows = false;
+template <typename Bound, typename Next, typename Rows_>
+inline constexpr bool kWritesRows<
+    Bound, Next, Rows_,
+    std::void_t<decltype(std::declval<Bound&>().rows(std::declval<const Next&>(), std::declval<Rows_&>()))>> = true;
+template <typename Bound, typename From, typename Stop_, typename = void>
+inline constexpr bool kAccepts = false;
+template <typename Bound, typename From, typename Stop_>
+inline constexpr bool kAccepts<Bound, From, Stop_,
+                               std::void_t<decltype(bool{std::declval<Bound&>().accepts(
+                                   std::declval<const From&>(), std::declval<const Stop_&>())})>> = true;
+
 }  // namespace bound_detail
 
 /// Everything that restricts the next motion of a Tracker beyond the joint limits: Bounds(a, b, …) joins bounds, for
@@ -105,12 +124,17 @@ class Bounds {
 
   template <typename JointVector>
   void require(const JointVector& q) {
+    static_assert((bound_detail::kHasRequire<Each, JointVector> && ...),
+                  "a bound needs `void require(const JointVector& q)`");
     std::apply([&](auto&... bound) { (bound.require(q), ...); }, each_);
   }
 
   /// Rows on the next motion.
   template <Level kLevel, int N, typename Scalar>
   [[nodiscard]] Rows<N, kRows, Scalar> rows(const NextMotion<kLevel, N, Scalar>& next) noexcept {
+    static_assert(
+        (bound_detail::kWritesRows<Each, NextMotion<kLevel, N, Scalar>, Rows<N, kRows, Scalar>> && ...),
+        "a bound needs `void rows(const NextMotion<kLevel, N, Scalar>& next, Rows<N, P, Scalar>& rows) noexcept`");
     Rows<N, kRows, Scalar> rows;
     if constexpr (kRows > 0) {
       rows.g.resize(next.state.q.size(), kRows);
@@ -137,6 +161,9 @@ class Bounds {
 
   template <Level kLevel, int N, typename Scalar>
   [[nodiscard]] bool accepts(const State<N, Scalar>& from, const Stop<kLevel, N, Scalar>& stop) noexcept {
+    static_assert(
+        (bound_detail::kAccepts<Each, State<N, Scalar>, Stop<kLevel, N, Scalar>> && ...),
+        "a bound needs `bool accepts(const State<N, Scalar>& from, const Stop<kLevel, N, Scalar>& stop) noexcept`");
     return std::apply([&](auto&... bound) noexcept { return ((bound.empty() || bound.accepts(from, stop)) && ...); },
                       each_);
   }

@@ -7,6 +7,7 @@
 
 #include "fpbm/core/detail/validation.hpp"
 #include "fpbm/geometry/detail/product_space.hpp"
+#include "fpbm/task/detail/task_check.hpp"
 
 namespace fpbm {
 
@@ -22,7 +23,7 @@ template <typename Task>
 
 /// Tasks on one level, with equal priority.
 template <typename... Tasks>
-struct TaskLevel {
+struct TaskLevel : private TaskCheck<Tasks>... {
   static constexpr int kRows = ((Tasks::kRows == Eigen::Dynamic) || ...) ? Eigen::Dynamic : (Tasks::kRows + ...);
   std::tuple<Tasks...> tasks;
 
@@ -161,7 +162,13 @@ class Stack {
                          ", the number of joints: move a task to another level");
       }
     }
-    std::apply([&](auto&... task) { (task.bind(robot), ...); }, tasks_);
+    std::apply(
+        [&](auto&... task) {
+          static_assert((task_check::kHasBind<std::decay_t<decltype(task)>, Robot> && ...),
+                        "a task needs `template <typename Robot> void bind(const Robot& robot)`");
+          (task.bind(robot), ...);
+        },
+        tasks_);
   }
 
   /// Calls f(task, i) for each task, where i is its index as a std::integral_constant.
