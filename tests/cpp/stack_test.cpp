@@ -283,7 +283,8 @@ void expect_ticks_of_the_task(const First& first, const TaskGains<>& gains, cons
 }
 
 TEST(Stack, of_one_level_is_the_tracker_of_that_task) {
-  const DiagonalWeights<7> weights(Vector<7>(Vector<7>::Ones()));
+  const Vector<7> ones = Vector<7>::Ones();
+  const DiagonalWeights<7> weights(ones);
   const auto null_space = NullSpace<7>().with_damping(2.0);
   expect_ticks_of_the_task(Balanced<7>(0.6, weights, null_space), TaskGains<>(10.0, 25.0),
                            FPBM<7>(0.6, weights, 10.0, 25.0, null_space));
