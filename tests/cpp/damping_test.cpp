@@ -377,9 +377,8 @@ RealMatrix damped_inverse(const Weights& weights, const SingularDamping<Scalar>&
   EXPECT_FALSE(failed(gram.factor(rows, weights.template inverse_bound<Scalar>())));
   Matrix<N, M, Scalar> inverse;
   for (int i = 0; i < M; ++i) {
-    const Vector<N, Scalar> column = gram.solved([i](const auto& solutions) -> Vector<N, Scalar> {
-      return solutions.motion(solutions.coefficients(Vector<M, Scalar>::Unit(i)));
-    });
+    const Vector<N, Scalar> column = gram.solved(
+        [i](const auto& solutions) -> Vector<N, Scalar> { return solutions.motion(Vector<M, Scalar>::Unit(i)); });
     inverse.col(i) = weights.root(column);
   }
   return real(inverse);
@@ -468,7 +467,7 @@ void add_errors(FreeErrors& errors, const Scheme& scheme, const Matrix<M, N, Sca
   const Vector<M, Scalar> nothing = Vector<M, Scalar>::Zero();
   const State<N, Scalar> at_rest{q, Vector<N, Scalar>::Zero()};
   const Matrix<M, N, Scalar> Jd = Matrix<M, N, Scalar>::Zero();
-  const Status status = scheme.resolve_rows(nothing, nothing, J, Jd, at_rest, u);
+  const Status status = scheme.resolve_rows(TaskEquation<M, N, Scalar>{J, Jd, nothing, nothing}, at_rest, u);
   EXPECT_FALSE(failed(status)) << message(status);
   const RealVector z = real(scheme.null_space.position_part(at_rest));
   const auto radius = static_cast<double>(scheme.singular.radius());

@@ -1,11 +1,9 @@
 #pragma once
 
-#include <utility>
-
 #include "fpbm/core/types.hpp"
 #include "fpbm/geometry/space.hpp"
 #include "fpbm/objective/null_space.hpp"
-#include "fpbm/scheme/detail/least_norm.hpp"
+#include "fpbm/scheme/detail/solve_law.hpp"
 #include "fpbm/scheme/weights.hpp"
 #include "fpbm/singular/damping.hpp"
 #include "fpbm/task/detail/feedback.hpp"
@@ -49,46 +47,21 @@ struct VelocityScheme {
                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
                                Vector<N, Scalar>& qd, Scalar* sigma = nullptr) const noexcept {
     const auto v = commanded_velocity(k, kinematics, reference);
-    return solve<kScaledRows<Space, N>>(v, kinematics.J, kinematics.Jd, scale_of_rows(kinematics), state, qd, sigma);
+    const TaskEquation<Space::kRows, N, Scalar> task{kinematics.J, kinematics.Jd, v, v};
+    return solve_law<kScaledRows<Space, N>>(*this, task, scale_of_rows(kinematics), state, qd, sigma);
   }
 
-  /// Joint velocities with J qd = b for any rows, all in metres: the law without feedback.
+  /// Joint velocities of a task whose rows are all in metres: the law without feedback.
   template <int M>
-  [[nodiscard]] Status resolve_rows(const Vector<M, Scalar>& b, const Vector<M, Scalar>&, const Matrix<M, N, Scalar>& J,
-                                    const Matrix<M, N, Scalar>& Jd, const State<N, Scalar>& state,
+  [[nodiscard]] Status resolve_rows(const TaskEquation<M, N, Scalar>& task, const State<N, Scalar>& state,
                                     Vector<N, Scalar>& qd, Scalar* sigma = nullptr) const noexcept {
-    return solve<kScaledRows<Position<M>, N>>(b, J, Jd, Scalar(1), state, qd, sigma);
+    return solve_law<kScaledRows<Position<M>, N>>(*this, task, Scalar(1), state, qd, sigma);
   }
 
- private:
-  template <int kTurns, int M>
-  [[nodiscard]] Status solve(const Vector<M, Scalar>& v, const Matrix<M, N, Scalar>& J, const Matrix<M, N, Scalar>& Jd,
-                             const Scalar& length, const State<N, Scalar>& state, Vector<N, Scalar>& qd,
-                             Scalar* sigma) const noexcept {
-    if constexpr (kHasSelfMotion<M, N>) {
-      auto undamped = undamped_result<kTurns>(
-          singular, J, length,
-          [&](const auto& motion, Vector<N, Scalar>& u) noexcept {
-            with_one_self_motion<kLevel>(motion, weights, Scalar(1), v, Jd, null_space, state, u);
-          },
-          sigma);
-      if (all_of(undamped.regular)) {
-        qd = std::move(undamped.u);
-        return Status::kOk;
-      }
-      return solve_by_factorisation<kTurns>(v, J, length, state, undamped, qd, sigma);
-    } else {
-      return solve_by_factorisation<kTurns>(v, J, length, state, NoUndampedResult{}, qd, sigma);
-    }
-  }
-
-  template <int kTurns, int M, typename Known>
-  [[nodiscard]] Status solve_by_factorisation(const Vector<M, Scalar>& v, const Matrix<M, N, Scalar>& J,
-                                              const Scalar& length, const State<N, Scalar>& state,
-                                              const Known& undamped, Vector<N, Scalar>& qd,
-                                              Scalar* sigma) const noexcept {
-    return least_norm<kLevel, kTurns>(weights, v, NoForce{}, null_space, singular, J, length, state, undamped, qd,
-                                      sigma);
+  /// The law, in terms of a solver of the task (scheme/detail/solve_law.hpp).
+  template <typename Solver, typename Z>
+  [[nodiscard, gnu::always_inline]] auto law(const Solver& solver, const Z& z) const noexcept {
+    return solver.weighted() + solver.project(z);
   }
 };
 

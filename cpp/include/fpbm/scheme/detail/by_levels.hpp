@@ -10,6 +10,8 @@
 #include "fpbm/linalg/detail/product.hpp"
 #include "fpbm/linalg/detail/sums.hpp"
 #include "fpbm/path/reference.hpp"
+#include "fpbm/scheme/detail/require_members.hpp"
+#include "fpbm/scheme/detail/task_equation.hpp"
 #include "fpbm/singular/detail/damped_level.hpp"
 #include "fpbm/singular/detail/scaled_level.hpp"
 #include "fpbm/task/detail/stack_kinematics.hpp"
@@ -33,6 +35,7 @@ struct ByLevels {
   static constexpr int kDof = Scheme::kDof;
   using JointVector = Vector<kDof, Scalar>;
   using Space = typename Stack_::Space;
+  static_assert(require_members_for_stack<Scheme, Stack_::kRows[0], kDof, Scalar>());
 
   Scheme scheme;
   Scalar radius;  ///< ε of the damping of lower levels, for the rows of ScaledLevel.
@@ -89,7 +92,7 @@ struct ByLevels {
       subtract_drift(kinematics.tick, level, state.qd, r);
       if constexpr (kIndex == 0) {
         result = filled<JointVector>(state.q.size());
-        status = scheme.resolve_rows(r, xd, level.J, level.Jd, state, result, sigma);
+        status = scheme.resolve_rows(TaskEquation<M, kDof, Scalar>{level.J, level.Jd, r, xd}, state, result, sigma);
         if (first != nullptr) *first = result;
         if (apart) {
           secondary = secondary_motion(level, state.q);
@@ -112,7 +115,8 @@ struct ByLevels {
     const auto nothing = filled<Vector<M, Scalar>>(level.rows());
     auto motion = filled<JointVector>(q.size());
     const State<kDof, Scalar> at_rest{q, motion};
-    const Status status = scheme.resolve_rows(nothing, nothing, level.J, level.Jd, at_rest, motion);
+    const TaskEquation<M, kDof, Scalar> task{level.J, level.Jd, nothing, nothing};
+    const Status status = scheme.resolve_rows(task, at_rest, motion);
     return failed(status) ? filled<JointVector>(q.size()) : motion;
   }
 

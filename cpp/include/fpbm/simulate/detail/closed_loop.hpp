@@ -8,6 +8,7 @@
 #include "fpbm/linalg/detail/entrywise.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/path/reference.hpp"
+#include "fpbm/scheme/detail/require_members.hpp"
 
 namespace fpbm {
 
@@ -17,6 +18,7 @@ template <typename Arm, typename Scheme, typename Space>
 struct ClosedLoop {
   using Scalar = typename Arm::Scalar;
   static constexpr int N = Arm::kDof;
+  static_assert(require_members<Scheme, Space, N, Scalar>());
   static constexpr bool kSecondOrder = Scheme::kLevel == Level::kAcceleration;
   struct NoMotion {};
   using X = Matrix<N, kSecondOrder ? 2 : 1, Scalar>;

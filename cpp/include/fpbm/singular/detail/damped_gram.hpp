@@ -30,94 +30,78 @@ template <int M, int N, typename Scalar>
 
 /// ‖DJ‖²_F, where D multiplies the last kTurns rows, which are angular, by length [m].
 template <int kTurns, int M, int N, typename Scalar>
-[[nodiscard]] Scalar squared_norm_in_metres(const Matrix<M, N, Scalar>& J,
-                                            [[maybe_unused]] const Scalar& length) noexcept {
+[[nodiscard]] Scalar squared_norm_in_metres(const Matrix<M, N, Scalar>& J, const Scalar& length) noexcept {
   if constexpr (M == Eigen::Dynamic) {
-    static_assert(kTurns == 0, "if the number of rows is known at run time only, all rows must be in metres");
     return squared_norm(J);
   } else {
-    const Scalar* column = J.data();
-    Vector<M, Scalar> squares;
-    for (int i = 0; i < M; ++i) squares.coeffRef(i) = column[i] * column[i];
-    for (Eigen::Index j = 1; j < extent<N>(J.cols()); ++j) {
-      column += M;
-      for (int i = 0; i < M; ++i) squares.coeffRef(i) += column[i] * column[i];
+    auto squares = filled<Vector<M, Scalar>>(M);  // One sum for each row: the compiler adds the rows in parallel.
+    for (Eigen::Index j = 0; j < extent<N>(J.cols()); ++j) {
+      for (int i = 0; i < M; ++i) squares.coeffRef(i) += J.coeff(i, j) * J.coeff(i, j);
     }
     Scalar sum = squares.coeff(0);
-    for (int i = 1; i < M - kTurns; ++i) sum += squares.coeff(i);
-    if constexpr (kTurns > 0) {
-      Scalar turns = squares.coeff(M - kTurns);
-      for (int i = M - kTurns + 1; i < M; ++i) turns += squares.coeff(i);
-      sum += length * length * turns;
-    }
+    for (int i = 1; i < M; ++i) sum += i < M - kTurns ? squares.coeff(i) : length * length * squares.coeff(i);
     return sum;
   }
 }
 
 /// Solves systems with J C, where C Cᵀ = W⁻¹, and with the Gram matrix JW⁻¹Jᵀ. If J is nearly singular, damping Δ is
 /// added to the Gram matrix (SingularDamping). With Value = Pair<Scalar>, solves for two different W in parallel. All
-/// rows of J are converted to metres: D multiplies the last kTurns rows, which are angular, by length [m].
-template <int M, int N, typename Value, int kTurns = 0>
+/// rows of J are in metres.
+template <int M, int N, typename Value_>
 class DampedGram {
  public:
+  using Value = Value_;
   using Scalar = typename ScalarOf<Value>::type;
 
   /// J must outlive the DampedGram.
-  DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J,
-             const Scalar& length = Scalar(1)) noexcept
-      : damping_(damping), J_(J), length_(length) {}
-  DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>&& J,
-             const Scalar& length = Scalar(1)) = delete;
+  DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J) noexcept
+      : damping_(damping), J_(J) {}
+  DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>&& J) = delete;
 
   /// Factorises JC, given rows = (JC)ᵀ and an upper bound on the largest eigenvalue of W⁻¹ (for a pair: of the first
-  /// W). Returns kDamped if Δ is not zero, or the reason for a missing factorisation. If J has a factorisation and no
-  /// angular rows, and damping is on, sets *sigma, unless sigma is null, to the lower bound 1/√tr((JJᵀ)⁻¹) on σ_min(J).
-  /// The bound on σ_min(J) requires a pair, or W = I.
+  /// W). Returns kDamped if Δ is not zero, or the reason for a missing factorisation. If J has a factorisation and
+  /// damping is on, sets *sigma, unless sigma is null, to the lower bound 1/√tr((JJᵀ)⁻¹) on σ_min(J), for which the
+  /// first W must be I.
   [[nodiscard]] Status factor(const Matrix<N, M, Value>& rows, Scalar inverse_bound,
                               [[maybe_unused]] Scalar* sigma = nullptr) noexcept {
-    if constexpr (kTurns > 0) {
-      rows_ = rows;
-      for (Eigen::Index i = lengths(); i < J_.rows(); ++i) {
-        for (Eigen::Index k = 0; k < extent<N>(rows_.rows()); ++k) rows_.coeffRef(k, i) *= Value(length_);
-      }
-    }
-    const Status status = factor_.factor(kTurns > 0 ? rows_ : rows);
+    const Status status = factor_.factor(rows);
     if (all_of(damping_.radius() == Scalar(0)) || status == Status::kNotFinite) return status;
 
     // Most postures are far from singular, which the factorisation shows: λ_min(JJᵀ) ≥ λ_min(JW⁻¹Jᵀ) / ‖W⁻¹‖.
-    const Scalar threshold = damping_.radius() * damping_.radius() * squared_norm_in_metres<kTurns>(J_, length_);
+    const Scalar threshold = damping_.radius() * damping_.radius() * squared_norm_in_metres<0>(J_, Scalar(1));
     const Scalar bound = threshold * inverse_bound;
     const Scalar trace = first(factor_.inverse_trace());
     const Mask<Scalar> regular = bound * trace <= Scalar(1);
-    if constexpr (kTurns == 0 && !kInLanes<Scalar>) {
-      if (sigma != nullptr && status == Status::kOk) *sigma = Scalar(1) / std::sqrt(trace);
-    }
     if constexpr (kInLanes<Scalar>) {
       factor_.set_nan_unless(regular);
       return status;
     } else {
-      if (status == Status::kOk && regular) return status;
-      if constexpr (kTurns == 0) rows_ = rows;
-      return damped(threshold, bound, status);
+      if (sigma != nullptr && status == Status::kOk) *sigma = Scalar(1) / std::sqrt(trace);
+      return status == Status::kOk && regular ? status : damped(rows, threshold, bound, status);
     }
   }
 
-  /// Solutions after factor(): motion(coefficients(b)) = (JC)ᵀ(JW⁻¹Jᵀ + Δ)⁻¹b, which is (JC)⁺b if Δ = 0, and
-  /// force(coefficients(b)) = (JW⁻¹Jᵀ + Δ)⁻¹b.
+  /// Solutions after factor().
   template <bool kDamped>
   struct Solutions {
+    using Value = Value_;
     static constexpr bool kIsDamped = kDamped;
     const DampedGram& of;
 
-    [[nodiscard]] Vector<M, Value> coefficients(const Vector<M, Value>& b) const noexcept {
-      const Vector<M, Value> scaled = of.in_metres(b);
-      if constexpr (kDamped) return of.damped_.solve(scaled);
-      return of.factor_.coefficients(scaled);
+    /// (JC)ᵀ(JW⁻¹Jᵀ + Δ)⁻¹b, which is (JC)⁺b if Δ = 0.
+    [[nodiscard]] Vector<N, Value> motion(const Vector<M, Value>& b) const noexcept {
+      if constexpr (kDamped) return product(of.rows_, of.damped_.solve(b));
+      return of.factor_.combine(of.factor_.coefficients(b));
     }
-    /// a − motion(coefficients(J C a)), which for Δ = 0 is the projection of a on the null space of JC.
+    /// (JW⁻¹Jᵀ + Δ)⁻¹b.
+    [[nodiscard]] Vector<M, Value> force(const Vector<M, Value>& b) const noexcept {
+      if constexpr (kDamped) return of.damped_.solve(b);
+      return of.factor_.back_substitute(of.factor_.coefficients(b));
+    }
+    /// a − motion(J C a), which for Δ = 0 is the projection of a on the null space of JC.
     [[nodiscard]] Vector<N, Value> project(const Vector<N, Value>& a) const noexcept {
       if constexpr (kDamped) {
-        const Vector<N, Value> taken = motion(of.damped_.solve(transpose_times(of.rows_, a)));
+        const Vector<N, Value> taken = motion(transpose_times(of.rows_, a));
         return entrywise(a, [&](Eigen::Index i) { return a.coeff(i) - taken.coeff(i); });
       }
       return of.factor_.project(a);
@@ -139,14 +123,6 @@ class DampedGram {
       const Vector<N, Value> damped = project(a);
       return entrywise(a, [&](Eigen::Index i) { return result.coeff(i) + Value(beyond) * damped.coeff(i); });
     }
-    [[nodiscard]] Vector<N, Value> motion(const Vector<M, Value>& coefficients) const noexcept {
-      if constexpr (kDamped) return product(of.rows_, coefficients);
-      return of.factor_.combine(coefficients);
-    }
-    [[nodiscard]] Vector<M, Value> force(const Vector<M, Value>& coefficients) const noexcept {
-      if constexpr (kDamped) return of.in_metres(coefficients);
-      return of.in_metres(of.factor_.back_substitute(coefficients));
-    }
   };
 
   /// Calls f(solutions), which is compiled for solutions with and without damping, so that the usual case without
@@ -159,53 +135,31 @@ class DampedGram {
     return f(Solutions<false>{*this});
   }
 
-  /// Whether Δ is not zero.
+  /// Whether Δ is not zero. False with lanes, whose solutions are NaN in each lane in which damping may act.
   [[nodiscard]] bool damps() const noexcept {
-    if constexpr (kInLanes<Scalar>) {
+    if constexpr (kInLanes<Scalar>)
       return false;
-    } else {
+    else
       return lost_ > Scalar(0);
-    }
   }
 
   /// Additional null-space damping [1/s].
   [[nodiscard]] Scalar brake() const noexcept { return damping_.brake() * lost_; }
 
  private:
-  /// Number of linear rows of J.
-  [[nodiscard]] Eigen::Index lengths() const noexcept { return J_.rows() - kTurns; }
-
-  /// D b.
-  [[nodiscard]] Vector<M, Value> in_metres(const Vector<M, Value>& b) const noexcept {
-    Vector<M, Value> scaled = b;
-    for (Eigen::Index i = lengths(); i < J_.rows(); ++i) scaled(i) *= Value(length_);
-    return scaled;
-  }
-
   /// Whether the command is beyond the lost directions, from 0 to 1 (docs/singularities.md, Secondary motion): with
   /// t = |Δ b|/(ε³ (|a| + kUsual)), the result is (t² − 1)/3 within [0, 1].
   [[nodiscard]] Scalar beyond(const Vector<N, Value>& a, const Vector<M, Scalar>& b) const noexcept {
-    Scalar command(0);
-    for (Eigen::Index i = 0; i < b.size(); ++i) {
-      Scalar lost(0);
-      for (Eigen::Index j = 0; j < b.size(); ++j) {
-        lost += delta_.coeff(i, j) * (j < lengths() ? b.coeff(j) : length_ * b.coeff(j));
-      }
-      command += lost * lost;
-    }
+    const Scalar command = squared_norm(product(delta_, b));
     const Scalar size =
         std::sqrt(first(entrywise(a, [&](Eigen::Index i) { return a.coeff(i) * a.coeff(i); }).sum())) + Scalar(kUsual);
     const Scalar most = threshold_ * threshold_ * threshold_ * size * size;
     return command > most ? std::min((command - most) / (Scalar(3) * most), Scalar(1)) : Scalar(0);
   }
 
-  [[nodiscard, gnu::noinline]] Status damped(Scalar threshold, Scalar bound, Status undamped) noexcept {
-    Matrix<M, N, Scalar> even = J_;
-    const Eigen::Index m = J_.rows();
-    for (Eigen::Index i = lengths(); i < m; ++i) {
-      for (Eigen::Index j = 0; j < extent<N>(even.cols()); ++j) even.coeffRef(i, j) *= length_;
-    }
-    const LostDirections<M, Scalar> lost(gram_of(even), even, threshold);
+  [[nodiscard, gnu::noinline]] Status damped(const Matrix<N, M, Value>& rows, Scalar threshold, Scalar bound,
+                                             Status undamped) noexcept {
+    const LostDirections<M, Scalar> lost(gram_of(J_), J_, threshold);
     lost_ = lost.count;
     delta_ = lost.delta;
     threshold_ = threshold;
@@ -213,13 +167,13 @@ class DampedGram {
     const bool known = Value(Scalar(1)) > Value(round_off * round_off * bound) * factor_.inverse_trace();
     fade_ = known ? lost.fade : Scalar(0);
     if (!(lost_ > Scalar(0))) return undamped;
-    Matrix<M, M, Value> gram;  // Lower triangle.
-    gram.resize(m, m);
-    for (Eigen::Index i = 0; i < m; ++i) {
+    rows_ = rows;
+    Matrix<M, M, Value> gram = filled<Matrix<M, M, Value>>(J_.rows());  // Lower triangle.
+    for (Eigen::Index i = 0; i < J_.rows(); ++i) {
       const Vector<N, Value> row = column(rows_, i);
       for (Eigen::Index j = 0; j <= i; ++j) {
         gram(i, j) = entrywise(row, [&](Eigen::Index k) { return row.coeff(k) * rows_.coeff(k, j); }).sum() +
-                     Value(lost.delta(i, j));
+                     Value(delta_(i, j));
       }
     }
     const Status status = damped_.factor(gram);
@@ -235,10 +189,9 @@ class DampedGram {
 
   SingularDamping<Scalar> damping_;
   const Matrix<M, N, Scalar>& J_;
-  Scalar length_;
-  Matrix<N, M, Value> rows_;       ///< (DJC)ᵀ. Not set if kTurns = 0 and the posture is regular.
-  RowFactor<M, N, Value> factor_;  ///< Factorisation of DJC.
-  Cholesky<M, Value> damped_;      ///< Factorisation of D(JW⁻¹Jᵀ)D + Δ, if Δ ≠ 0.
+  RowFactor<M, N, Value> factor_;  ///< Factorisation of JC.
+  Cholesky<M, Value> damped_;      ///< Factorisation of JW⁻¹Jᵀ + Δ. Set only if Δ ≠ 0.
+  Matrix<N, M, Value> rows_;       ///< (JC)ᵀ. Set only if Δ ≠ 0.
   /// Usual size of a secondary motion [rad/s] or [rad/s²], with which a command is compared if z is small. Not tuned:
   /// Tracker.stops_at_the_workspace_boundary_and_returns has |z| from 1 to 8.
   static constexpr Number<Scalar> kUsual = 1;
