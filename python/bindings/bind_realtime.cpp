@@ -24,7 +24,6 @@ struct PyTick {
   Status status;
   double scale;
   JointBits saturated;
-  double sigma;
   Eigen::VectorXd error;
   std::optional<PyNearest> nearest;
   Eigen::VectorXd scales;                         ///< For a stack: scale of each level.
@@ -52,13 +51,13 @@ struct PyTick {
 
 template <typename Space>
 PyTick python_tick(const Tick<Space, kDynamic>& tick, const std::optional<PyNearest>& nearest) {
-  return {tick.q, tick.qd, tick.qdd, tick.status, tick.scale, tick.saturated, tick.sigma, tick.error, nearest, {}, {}};
+  return {tick.q, tick.qd, tick.qdd, tick.status, tick.scale, tick.saturated, tick.error, nearest, {}, {}};
 }
 
 /// For a stack.
 PyTick python_tick(const StackLoop& loop, const StackLoop::Result& tick, const std::optional<PyNearest>& nearest) {
-  return {tick.q,     tick.qd,          tick.qdd, tick.status,       tick.scale,  tick.saturated,
-          tick.sigma, loop.error(tick), nearest,  loop.scales(tick), loop.parts()};
+  return {tick.q,         tick.qd,          tick.qdd, tick.status,       tick.scale,
+          tick.saturated, loop.error(tick), nearest,  loop.scales(tick), loop.parts()};
 }
 
 template <typename Space>
@@ -216,6 +215,9 @@ class PyTracker {
   [[nodiscard]] Array qdd() {
     return visit_any([](auto& tracker) { return array_of(tracker.acceleration()); });
   }
+  [[nodiscard]] double sigma() {
+    return visit_any([](auto& tracker) { return tracker.sigma(); });
+  }
   [[nodiscard]] py::object tip() {
     if (const auto* stacked = std::get_if<Stacked>(&any_)) return (*stacked)->points();
     return visit("", [](auto& tracker, auto) -> py::object { return array_of(tracker.tip()); });
@@ -254,8 +256,6 @@ void bind_tick(py::module_& m) {
       .def_readonly("status", &PyTick::status, "Status of the tick; if the tick failed, the reason why the arm brakes.")
       .def_readonly("scale", &PyTick::scale, "Task scale that the limits admit, from 0 to 1.")
       .def_property_readonly("saturated", &PyTick::saturated_joints, "Which joints are on a bound, shape (n,).")
-      .def_readonly("sigma", &PyTick::sigma,
-                    "Lower bound on the least singular value of J at the tick's start, tight within a factor sqrt(m).")
       .def_property_readonly("error", array(&PyTick::error), "x - f(q) at the tick's start [m, rad], shape (m,).")
       .def_property_readonly("scales", &PyTick::level_scales,
                              "For a stack: task scale of each level, from 0 to 1, shape (levels,); else None.")
@@ -426,6 +426,9 @@ that name, or if the shape has another kind.)")
       .def_property_readonly("q", &PyTracker::q, "Joint positions of the tracker's own state [rad].")
       .def_property_readonly("qd", &PyTracker::qd, "Joint velocities of the tracker's own state [rad/s].")
       .def_property_readonly("qdd", &PyTracker::qdd, "Joint accelerations of the last tick [rad/s^2].")
+      .def_property_readonly("sigma", &PyTracker::sigma,
+                             "Lower bound on the least singular value of J of the tracker's own state, tight within a "
+                             "factor sqrt(m); for a stack, of the first level.")
       .def_property_readonly(
           "tip", &PyTracker::tip,
           "Tip of the tracker's own state in the base frame [m]; for a stack, the point of each task by name.");

@@ -35,6 +35,7 @@ class StackTrackerOf final : public StackTracker {
   [[nodiscard]] const State<kDynamic>& state() const noexcept override { return tracker_.state(); }
   [[nodiscard]] const JointVector& acceleration() const noexcept override { return tracker_.acceleration(); }
   [[nodiscard]] Point tip() const noexcept override { return tracker_.tip(); }
+  [[nodiscard]] double sigma() const noexcept override { return tracker_.sigma(); }
   [[nodiscard]] Clearance<kDynamic>& clearance() noexcept override {
     return tracker_.bounds().template get<Clearance<kDynamic>>();
   }

@@ -38,6 +38,7 @@ class StackTracker {
   [[nodiscard]] virtual const State<kDynamic>& state() const noexcept = 0;
   [[nodiscard]] virtual const JointVector& acceleration() const noexcept = 0;
   [[nodiscard]] virtual Point tip() const noexcept = 0;
+  [[nodiscard]] virtual double sigma() const noexcept = 0;
   [[nodiscard]] virtual Clearance<kDynamic>& clearance() noexcept = 0;
 };
 

@@ -39,6 +39,7 @@ class TrackerAt final : public AnyTracker<Space> {
     return tracker_.acceleration_change();
   }
   [[nodiscard]] Point tip() const noexcept override { return tracker_.tip(); }
+  [[nodiscard]] double sigma() const noexcept override { return tracker_.sigma(); }
   [[nodiscard]] Clearance<kDynamic>& clearance() noexcept override {
     return tracker_.bounds().template get<Clearance<kDynamic>>();
   }

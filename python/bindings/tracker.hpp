@@ -42,6 +42,7 @@ class AnyTracker {
   [[nodiscard]] virtual const JointVector& acceleration() const noexcept = 0;
   [[nodiscard]] virtual const JointVector& acceleration_change() const noexcept = 0;
   [[nodiscard]] virtual Point tip() const noexcept = 0;
+  [[nodiscard]] virtual double sigma() const noexcept = 0;
   [[nodiscard]] virtual Clearance<kDynamic>& clearance() noexcept = 0;
 
   // A tick whose step is made in lanes (LaneTracker).

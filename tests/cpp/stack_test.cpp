@@ -280,6 +280,11 @@ void expect_ticks_of_the_task(const First& first, const TaskGains<>& gains, cons
     ASSERT_EQ(one.status, same.status);
   }
   EXPECT_GT(limited, 100);
+  Kinematics<Pose, 7> kinematics;
+  expected.arm().kinematics(expected.state().q, kinematics);
+  const double least = Eigen::MatrixXd(kinematics.J).jacobiSvd().singularValues()(5);
+  EXPECT_LE(expected.sigma(), least);
+  EXPECT_GE(expected.sigma(), least / std::sqrt(6.0));
 }
 
 TEST(Stack, of_one_level_is_the_tracker_of_that_task) {

@@ -92,7 +92,7 @@ template <typename Result>
   return std::memcmp(a.q.data(), b.q.data(), sizeof a.q) == 0 &&
          std::memcmp(a.qd.data(), b.qd.data(), sizeof a.qd) == 0 &&
          std::memcmp(a.qdd.data(), b.qdd.data(), sizeof a.qdd) == 0 && a.status == b.status && a.scale == b.scale &&
-         a.saturated == b.saturated && a.sigma == b.sigma;
+         a.saturated == b.saturated;
 }
 
 /// The members of the library's class are only looked up, not called.

@@ -35,8 +35,7 @@ bool same_bits(double a, double b) {
 template <typename Result>
 void require_same(const Result& a, const Result& b) {
   require(same_bits(a.q, b.q) && same_bits(a.qd, b.qd) && same_bits(a.qdd, b.qdd) && same_bits(a.error, b.error) &&
-              same_bits(a.scale, b.scale) && same_bits(a.sigma, b.sigma) && a.status == b.status &&
-              a.saturated == b.saturated,
+              same_bits(a.scale, b.scale) && a.status == b.status && a.saturated == b.saturated,
           "the same input gives the same bits");
 }
 
@@ -47,7 +46,6 @@ void require_sane(const Result& result) {
   require(result.status <= fpbm::Status::kNotFinite && *fpbm::message(result.status) != '\0', "the status is one");
   require(result.scale >= 0.0 && result.scale <= 1.0, "the scale is a share");
   require((result.saturated >> result.q.size()) == 0, "only joints that there are lie on bounds");
-  require(result.sigma >= 0.0 || !result.q.allFinite(), "a singular value is not negative");
 }
 
 /// Checks bounds, up to round-off.

@@ -8,70 +8,31 @@
 #include <utility>
 
 #include "fpbm/bound/detail/next_motion.hpp"
+#include "fpbm/core/detail/has_member.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/limits/detail/rows.hpp"
 
 namespace fpbm {
-namespace bound_detail {
-
-/// Whether a bound has the functions of Clearance for shapes: near_distance_sum(), moves_away() and away(q).
-template <typename Bound, typename = void>
-inline constexpr bool kKnowsShapes = false;
-template <typename Bound>
-inline constexpr bool kKnowsShapes<Bound, std::void_t<decltype(std::declval<const Bound&>().moves_away())>> = true;
+namespace bound_member {
 
 template <typename Bound>
-[[nodiscard]] auto near_distance_sum([[maybe_unused]] const Bound& bound) noexcept {
-  if constexpr (kKnowsShapes<Bound>) {
-    return bound.near_distance_sum();
-  } else {
-    return 0.0;
-  }
-}
+using RowCount = decltype(int{Bound::kRows});
 template <typename Bound>
-[[nodiscard]] bool moves_away([[maybe_unused]] const Bound& bound) noexcept {
-  if constexpr (kKnowsShapes<Bound>) {
-    return bound.moves_away();
-  } else {
-    return false;
-  }
-}
-
-/// Whether Bound has a member, by the name of the member.
-template <typename Bound, typename = void>
-inline constexpr bool kHasRows = false;
+using StatusOfRows = decltype(Status{Bound::kStatus});
 template <typename Bound>
-inline constexpr bool kHasRows<Bound, std::enable_if_t<(Bound::kRows >= 0)>> = true;
-template <typename Bound, typename = void>
-inline constexpr bool kHasStatus = false;
-template <typename Bound>
-inline constexpr bool
-    kHasStatus<Bound, std::enable_if_t<std::is_same_v<std::decay_t<decltype(Bound::kStatus)>, Status>>> = true;
-template <typename Bound, typename = void>
-inline constexpr bool kHasEmpty = false;
-template <typename Bound>
-inline constexpr bool kHasEmpty<Bound, std::void_t<decltype(std::declval<const Bound&>().empty())>> = true;
-
-template <typename Bound, typename JointVector, typename = void>
-inline constexpr bool kHasRequire = false;
+using Empty = decltype(bool{std::declval<const Bound&>().empty()});
 template <typename Bound, typename JointVector>
-inline constexpr bool kHasRequire<
-    Bound, JointVector, std::void_t<decltype(std::declval<Bound&>().require(std::declval<const JointVector&>()))>> =
-    true;
-template <typename Bound, typename Next, typename Rows_, typename = void>
-inline constexpr bool kWritesRows = false;
+using Require = decltype(std::declval<Bound&>().require(std::declval<const JointVector&>()));
 template <typename Bound, typename Next, typename Rows_>
-inline constexpr bool kWritesRows<
-    Bound, Next, Rows_,
-    std::void_t<decltype(std::declval<Bound&>().rows(std::declval<const Next&>(), std::declval<Rows_&>()))>> = true;
-template <typename Bound, typename From, typename Stop_, typename = void>
-inline constexpr bool kAccepts = false;
+using WriteRows = decltype(std::declval<Bound&>().rows(std::declval<const Next&>(), std::declval<Rows_&>()));
 template <typename Bound, typename From, typename Stop_>
-inline constexpr bool kAccepts<Bound, From, Stop_,
-                               std::void_t<decltype(bool{std::declval<Bound&>().accepts(
-                                   std::declval<const From&>(), std::declval<const Stop_&>())})>> = true;
+using Accepts = decltype(bool{
+    std::declval<Bound&>().accepts(std::declval<const From&>(), std::declval<const Stop_&>())});
+/// Of a Clearance, which knows shapes: near_distance_sum(), moves_away() and away(q).
+template <typename Bound>
+using MovesAway = decltype(std::declval<const Bound&>().moves_away());
 
-}  // namespace bound_detail
+}  // namespace bound_member
 
 /// Everything that restricts the next motion of a Tracker beyond the joint limits: Bounds(a, b, …) joins bounds, for
 /// example a Clearance, TaskBounds and SpeedBounds. Bounds<> restricts nothing.
@@ -95,9 +56,10 @@ inline constexpr bool kAccepts<Bound, From, Stop_,
 template <typename... Each>
 class Bounds {
  public:
-  static_assert((bound_detail::kHasRows<Each> && ...), "a bound needs `static constexpr int kRows`");
-  static_assert((bound_detail::kHasStatus<Each> && ...), "a bound needs `static constexpr fpbm::Status kStatus`");
-  static_assert((bound_detail::kHasEmpty<Each> && ...), "a bound needs `bool empty() const noexcept`");
+  static_assert((kHas<Each, bound_member::RowCount> && ...), "a bound needs `static constexpr int kRows`");
+  static_assert((kHas<Each, bound_member::StatusOfRows> && ...),
+                "a bound needs `static constexpr fpbm::Status kStatus`");
+  static_assert((kHas<Each, bound_member::Empty> && ...), "a bound needs `bool empty() const noexcept`");
   static constexpr int kRows = (0 + ... + Each::kRows);
   static_assert(kRows <= 32, "at most 32 rows: the active rows are the bits of a std::uint32_t");
 
@@ -124,7 +86,7 @@ class Bounds {
 
   template <typename JointVector>
   void require(const JointVector& q) {
-    static_assert((bound_detail::kHasRequire<Each, JointVector> && ...),
+    static_assert((kHas<Each, bound_member::Require, JointVector> && ...),
                   "a bound needs `void require(const JointVector& q)`");
     std::apply([&](auto&... bound) { (bound.require(q), ...); }, each_);
   }
@@ -133,7 +95,7 @@ class Bounds {
   template <Level kLevel, int N, typename Scalar>
   [[nodiscard]] Rows<N, kRows, Scalar> rows(const NextMotion<kLevel, N, Scalar>& next) noexcept {
     static_assert(
-        (bound_detail::kWritesRows<Each, NextMotion<kLevel, N, Scalar>, Rows<N, kRows, Scalar>> && ...),
+        (kHas<Each, bound_member::WriteRows, NextMotion<kLevel, N, Scalar>, Rows<N, kRows, Scalar>> && ...),
         "a bound needs `void rows(const NextMotion<kLevel, N, Scalar>& next, Rows<N, P, Scalar>& rows) noexcept`");
     Rows<N, kRows, Scalar> rows;
     if constexpr (kRows > 0) {
@@ -162,7 +124,7 @@ class Bounds {
   template <Level kLevel, int N, typename Scalar>
   [[nodiscard]] bool accepts(const State<N, Scalar>& from, const Stop<kLevel, N, Scalar>& stop) noexcept {
     static_assert(
-        (bound_detail::kAccepts<Each, State<N, Scalar>, Stop<kLevel, N, Scalar>> && ...),
+        (kHas<Each, bound_member::Accepts, State<N, Scalar>, Stop<kLevel, N, Scalar>> && ...),
         "a bound needs `bool accepts(const State<N, Scalar>& from, const Stop<kLevel, N, Scalar>& stop) noexcept`");
     return std::apply([&](auto&... bound) noexcept { return ((bound.empty() || bound.accepts(from, stop)) && ...); },
                       each_);
@@ -171,16 +133,18 @@ class Bounds {
   /// Sum of the distances to shapes that are near [m], of bounds that know shapes. While the arm is at rest, the sum
   /// changes only if obstacles move.
   [[nodiscard]] auto near_distance_sum() const noexcept {
-    return (0.0 + ... + bound_detail::near_distance_sum(std::get<Each>(each_)));
+    return (0.0 + ... + of_shapes<Each>([](const auto& bound) { return bound.near_distance_sum(); }, 0.0));
   }
   /// Whether null-space motion away from shapes is enabled.
-  [[nodiscard]] bool moves_away() const noexcept { return (bound_detail::moves_away(std::get<Each>(each_)) || ...); }
+  [[nodiscard]] bool moves_away() const noexcept {
+    return (of_shapes<Each>([](const auto& bound) { return bound.moves_away(); }, false) || ...);
+  }
   /// Null-space motion away from shapes in the posture q [rad/s², or rad/s at velocity level].
   template <typename JointVector>
   [[nodiscard]] JointVector away(const JointVector& q) noexcept {
     auto sum = filled<JointVector>(q.size());
     each([&](auto& bound) noexcept {
-      if constexpr (bound_detail::kKnowsShapes<std::decay_t<decltype(bound)>>) {
+      if constexpr (kHas<std::decay_t<decltype(bound)>, bound_member::MovesAway>) {
         if (bound.moves_away()) sum += bound.away(q);
       }
     });
@@ -198,6 +162,15 @@ class Bounds {
     std::apply([&](const auto&... bound) noexcept { (f(bound), ...); }, each_);
   }
 
+  /// f(bound) of a bound that knows shapes; `other` for any other bound.
+  template <typename Bound, typename F, typename Other>
+  [[nodiscard]] auto of_shapes([[maybe_unused]] const F& f, [[maybe_unused]] Other other) const noexcept {
+    if constexpr (kHas<Bound, bound_member::MovesAway>) {
+      return f(get<Bound>());
+    } else {
+      return other;
+    }
+  }
   /// The bits below bit `end`.
   [[nodiscard]] static std::uint32_t below(Eigen::Index end) noexcept {
     return end < 32 ? (std::uint32_t(1) << end) - std::uint32_t(1) : ~std::uint32_t(0);

@@ -13,15 +13,12 @@ namespace fpbm {
 /// Result of one tick of a control loop. Rows: number of rows of the task error.
 template <int Rows, int N, typename Scalar>
 struct TickOfRows {
-  Vector<N, Scalar> q;    ///< Command for the end of the tick [rad], or [m] for a prismatic joint.
-  Vector<N, Scalar> qd;   ///< Velocity at the end of the tick [rad/s].
-  Vector<N, Scalar> qdd;  ///< Mean acceleration over the tick [rad/s²].
-  Status status;          ///< Status of the tick. If failed, the reason why the arm brakes.
-  Scalar scale;           ///< Task scale: 1 for the whole task, 0 if the arm brakes.
-  JointBits saturated;    ///< Bit i is set if joint i is on a bound.
-  /// Lower bound on σ_min(J), tight within a factor √M: at the start of the tick, or in its middle for several tasks at
-  /// acceleration level.
-  Scalar sigma;
+  Vector<N, Scalar> q;         ///< Command for the end of the tick [rad], or [m] for a prismatic joint.
+  Vector<N, Scalar> qd;        ///< Velocity at the end of the tick [rad/s].
+  Vector<N, Scalar> qdd;       ///< Mean acceleration over the tick [rad/s²].
+  Status status;               ///< Status of the tick. If failed, the reason why the arm brakes.
+  Scalar scale;                ///< Task scale: 1 for the whole task, 0 if the arm brakes.
+  JointBits saturated;         ///< Bit i is set if joint i is on a bound.
   Vector<Rows, Scalar> error;  ///< x ⊖ f(q) at the start of the tick [m, rad].
 };
 

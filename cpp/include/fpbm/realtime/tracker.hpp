@@ -205,6 +205,13 @@ class Tracker {
   [[nodiscard]] Bounds_& bounds() noexcept { return state_.bounds; }
   [[nodiscard]] const Bounds_& bounds() const noexcept { return state_.bounds; }
 
+  /// Lower bound on σ_min(J) of the first level in the tracker's own state, tight within a factor √M.
+  [[nodiscard]] Scalar sigma() const noexcept {
+    Kinematics<Space, N, Scalar> kinematics;
+    arm_.kinematics(state().q, kinematics);
+    return least_singular_value_bound(first_rows(kinematics));
+  }
+
   /// Tip f(q) of the tracker's own state, the usual start of a PathFollower.
   [[nodiscard]] typename Space::template Point<Scalar> tip() const noexcept {
     Kinematics<Space, N, Scalar> kinematics;

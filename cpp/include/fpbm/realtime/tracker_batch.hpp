@@ -81,7 +81,6 @@ class TrackerBatch {
 
  private:
   using Loop = ClosedLoop<Arm, Scheme, Space>;
-  using X = typename Loop::X;
 
   /// Replaces one lane of the references by the references that its tracker corrects.
   void correct(TickReferences<Space, In>& references, std::size_t lane) const noexcept {
@@ -104,9 +103,7 @@ class TrackerBatch {
       set_lane(state.last, lane, Vector<N, Scalar>(trackers_[lane].acceleration()));
       set_lane(state.change, lane, Vector<N, Scalar>(trackers_[lane].acceleration_change()));
     }
-    X dx = Loop::packed(loop.state);
-    const auto middle = state.update_middle(loop, references, gains_of<In>(scheme_));
-    if (failed(loop.resolve(middle, dx))) return Mask<In>(false);
+    if (failed(loop.resolve(state.update_middle(loop, references, gains_of<In>(scheme_))))) return Mask<In>(false);
     u = loop.motion();
     const In zero = u.sum() * In(0);  // Inf and NaN make the sum NaN.
     return zero == In(0);

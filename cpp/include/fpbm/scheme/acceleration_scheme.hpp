@@ -48,22 +48,20 @@ struct AccelerationScheme {
 
   /// Joint accelerations qdd [rad/s²] that give the tip its reference acceleration, corrected by the feedback. If the
   /// status is a failure, qdd does not change.
-  /// sigma, unless null, is set to the lower bound 1/√tr((JJᵀ)⁻¹) on σ_min(J), if the factorisation for qdd provides
-  /// this bound.
   template <typename Space>
   [[nodiscard]] Status resolve(const Kinematics<Space, N, Scalar>& kinematics,
                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
-                               Vector<N, Scalar>& qdd, Scalar* sigma = nullptr) const noexcept {
+                               Vector<N, Scalar>& qdd) const noexcept {
     const auto b = commanded_acceleration(k1, k2, kinematics, reference, state);
     const TaskEquation<Space::kRows, N, Scalar> task{kinematics.J, kinematics.Jd, b, reference.xd};
-    return solve_law<kScaledRows<Space, N>>(*this, task, scale_of_rows(kinematics), state, qdd, sigma);
+    return solve_law<kScaledRows<Space, N>>(*this, task, scale_of_rows(kinematics), state, qdd);
   }
 
   /// Joint accelerations of a task whose rows are all in metres: the law without feedback.
   template <int M>
   [[nodiscard]] Status resolve_rows(const TaskEquation<M, N, Scalar>& task, const State<N, Scalar>& state,
-                                    Vector<N, Scalar>& qdd, Scalar* sigma = nullptr) const noexcept {
-    return solve_law<kScaledRows<Position<M>, N>>(*this, task, Scalar(1), state, qdd, sigma);
+                                    Vector<N, Scalar>& qdd) const noexcept {
+    return solve_law<kScaledRows<Position<M>, N>>(*this, task, Scalar(1), state, qdd);
   }
 
   /// The law, in terms of a solver of the task (scheme/detail/solve_law.hpp).

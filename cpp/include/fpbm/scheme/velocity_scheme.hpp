@@ -40,22 +40,20 @@ struct VelocityScheme {
 
   /// Joint velocities qd [rad/s] that give the tip its reference velocity, corrected by the feedback. If the status is
   /// a failure, qd does not change.
-  /// sigma, unless null, is set to the lower bound 1/√tr((JJᵀ)⁻¹) on σ_min(J), if the factorisation for qd provides
-  /// this bound.
   template <typename Space>
   [[nodiscard]] Status resolve(const Kinematics<Space, N, Scalar>& kinematics,
                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
-                               Vector<N, Scalar>& qd, Scalar* sigma = nullptr) const noexcept {
+                               Vector<N, Scalar>& qd) const noexcept {
     const auto v = commanded_velocity(k, kinematics, reference);
     const TaskEquation<Space::kRows, N, Scalar> task{kinematics.J, kinematics.Jd, v, v};
-    return solve_law<kScaledRows<Space, N>>(*this, task, scale_of_rows(kinematics), state, qd, sigma);
+    return solve_law<kScaledRows<Space, N>>(*this, task, scale_of_rows(kinematics), state, qd);
   }
 
   /// Joint velocities of a task whose rows are all in metres: the law without feedback.
   template <int M>
   [[nodiscard]] Status resolve_rows(const TaskEquation<M, N, Scalar>& task, const State<N, Scalar>& state,
-                                    Vector<N, Scalar>& qd, Scalar* sigma = nullptr) const noexcept {
-    return solve_law<kScaledRows<Position<M>, N>>(*this, task, Scalar(1), state, qd, sigma);
+                                    Vector<N, Scalar>& qd) const noexcept {
+    return solve_law<kScaledRows<Position<M>, N>>(*this, task, Scalar(1), state, qd);
   }
 
   /// The law, in terms of a solver of the task (scheme/detail/solve_law.hpp).

@@ -4,8 +4,8 @@
 
 #include "fpbm/core/detail/mask.hpp"
 #include "fpbm/core/detail/validation.hpp"
-#include "fpbm/core/types.hpp"
 #include "fpbm/core/status.hpp"
+#include "fpbm/core/types.hpp"
 #include "fpbm/model/detail/continuous_joints.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/path/reference.hpp"

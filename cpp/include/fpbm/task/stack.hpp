@@ -164,7 +164,7 @@ class Stack {
     }
     std::apply(
         [&](auto&... task) {
-          static_assert((task_check::kHasBind<std::decay_t<decltype(task)>, Robot> && ...),
+          static_assert((kHas<std::decay_t<decltype(task)>, task_member::Bind, Robot> && ...),
                         "a task needs `template <typename Robot> void bind(const Robot& robot)`");
           (task.bind(robot), ...);
         },

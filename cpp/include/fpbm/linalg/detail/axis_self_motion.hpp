@@ -99,39 +99,6 @@ class AxisSelfMotion {
   }
   [[nodiscard]] Scalar inverse_square(const Scalar& length) const noexcept { return rough_inverse_square(length); }
 
-  /// See SpatialSelfMotion::inverse_trace().
-  [[nodiscard, gnu::noinline]] Scalar inverse_trace() const noexcept {
-    Twice s12[3], s34[3];
-    rest_.inverse(s12, s34);
-    const auto lever = [&](const Scalar& a, const Scalar& b) { return Twice(a) * K_[0] + Twice(b) * K_[1]; };
-    const Three<Twice> G = {lever(B_[0].x, B_[1].x), lever(B_[0].y, B_[1].y), lever(B_[0].z, B_[1].z)};
-    const auto times_lever = [&](const Three<Scalar>& a) { return dot(repeated<Twice>(a), G); };
-    const auto square_of_rest = [&](const Twice(&s)[3]) {
-      const Twice a = s[0] * Twice(G.x.first()) + s[1] * Twice(G.y.first()) + s[2] * Twice(G.z.first());
-      const Twice b = s[0] * Twice(G.x.second()) + s[1] * Twice(G.y.second()) + s[2] * Twice(G.z.second());
-      return a * a + b * b;
-    };
-    Scalar square = rest_.inverse_square() + sum(square_of_rest(s12) + square_of_rest(s34));
-    Scalar null_square = rest_.null_square();
-    Three<Scalar> along_p = {Scalar(0), Scalar(0), Scalar(0)};
-    Twice along_k(Scalar(0));
-    for (int i = 0; i < 2; ++i) {
-      const auto entry = [&](int j) {
-        const Twice both = X12_[i] * s12[j] + X34_[i] * s34[j];
-        return both.second() - both.first();
-      };
-      const Three<Scalar> p = {entry(0), entry(1), entry(2)};
-      const Twice r = K_[i] - times_lever(p);
-      const Scalar v = -sum(X12_[i] * rest_.null12() + X34_[i] * rest_.null34());
-      square += dot(p, p) + sum(r * r);
-      null_square += v * v;
-      along_p = along_p + v * p;
-      along_k += Twice(v) * K_[i];
-    }
-    const Twice along_r = along_k - times_lever(along_p);
-    return square - (dot(along_p, along_p) + sum(along_r * along_r)) / null_square;
-  }
-
  private:
   /// Joints of the hand T, then the other joints R.
   static constexpr int kJoints[kKinds][6] = {

@@ -20,7 +20,6 @@ namespace fpbm {
 ///   along(t, g)                    μᵀt, where Jᵀμ = g
 ///   inverse_square(length)         an upper bound on 1/σ²_min(DJ), where D multiplies the angular rows by length [m]
 ///   rough_inverse_square(length)   the same or a larger upper bound, at lower cost
-///   inverse_trace()                tr((JJᵀ)⁻¹), whose reciprocal bounds σ²_min(J) from below, tight within a factor M
 template <int M, int N, typename Scalar>
 class SelfMotion;
 
@@ -61,9 +60,10 @@ class SelfMotion<2, 3, Scalar> {
     return t(0) * dot(h, first_) + t(1) * dot(h, second_);
   }
 
-  [[nodiscard]] Scalar inverse_square(const Scalar&) const noexcept { return inverse_trace(); }
-  [[nodiscard]] Scalar rough_inverse_square(const Scalar&) const noexcept { return inverse_trace(); }
-  [[nodiscard]] Scalar inverse_trace() const noexcept { return dot(first_, first_) + dot(second_, second_); }
+  [[nodiscard]] Scalar inverse_square(const Scalar&) const noexcept {
+    return dot(first_, first_) + dot(second_, second_);
+  }
+  [[nodiscard]] Scalar rough_inverse_square(const Scalar& length) const noexcept { return inverse_square(length); }
 
  private:
   Three<Scalar> v_;
@@ -105,7 +105,6 @@ class SelfMotion<3, 4, Scalar> {
     return squares.x + squares.y + squares.z / (length * length);
   }
   [[nodiscard]] Scalar rough_inverse_square(const Scalar& length) const noexcept { return inverse_square(length); }
-  [[nodiscard]] Scalar inverse_trace() const noexcept { return S_.inverse_square(); }
 
  private:
   ThreeByFour<Scalar> S_;  ///< J

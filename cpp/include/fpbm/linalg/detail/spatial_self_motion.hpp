@@ -96,36 +96,6 @@ class SpatialSelfMotion {
     return P + (P * G + K + Scalar(2) * sqrt(P * G * K)) / (length * length);
   }
 
-  /// tr((JJᵀ)⁻¹) = ‖J⁺‖² = ‖R‖² − |Rᵀv|²/vᵀv, with Frobenius norms. R = [P, (K, 0) − P G] is a right inverse of J, and
-  /// J⁺ is R without its component along v (docs/equations.md, Degree of redundancy 1, Singular-value bound of a tick).
-  [[nodiscard, gnu::noinline]] Scalar inverse_trace() const noexcept {
-    Twice s12[3], s34[3];
-    rest_.inverse(s12, s34);
-    const Rows H = hand(s12, s34);
-    const Rows G = lever();
-    const auto times_lever = [&G](const auto& a, const auto& b, const auto& c) {
-      using Value = std::decay_t<decltype(a)>;
-      const auto column = [&](const Scalar& ga, const Scalar& gb, const Scalar& gc) {
-        return a * Value(ga) + b * Value(gb) + c * Value(gc);
-      };
-      return Three<Value>{column(G[0].x, G[1].x, G[2].x), column(G[0].y, G[1].y, G[2].y),
-                          column(G[0].z, G[1].z, G[2].z)};
-    };
-    const Three<Twice> r12 = times_lever(s12[0], s12[1], s12[2]);
-    const Three<Twice> r34 = times_lever(s34[0], s34[1], s34[2]);
-    const Three<Scalar> v = turns_of_null();
-    Scalar square = rest_.inverse_square() + sum(dot(r12, r12) + dot(r34, r34));
-    Three<Scalar> along_p = v.x * H[0], along_k = v.x * K_[0];
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Three<Scalar> r = K_[i] - times_lever(H[i].x, H[i].y, H[i].z);
-      square += dot(H[i], H[i]) + dot(r, r);
-    }
-    along_p = (along_p + v.y * H[1]) + v.z * H[2];
-    along_k = (along_k + v.y * K_[1]) + v.z * K_[2];
-    const Three<Scalar> along_r = along_k - times_lever(along_p.x, along_p.y, along_p.z);
-    return square - (dot(along_p, along_p) + dot(along_r, along_r)) / (rest_.null_square() + dot(v, v));
-  }
-
   /// inverse_square() with the bounds ‖P‖² ≤ ‖S⁺‖² (1 + ‖X‖²), ‖G‖ ≤ ‖B_T‖ ‖K‖ and (a + b)² ≤ 2 (a² + b²).
   [[nodiscard, gnu::always_inline]] Scalar rough_inverse_square(const Scalar& length) const noexcept {
     const Scalar X = sum(dot(X12_, X12_) + dot(X34_, X34_));

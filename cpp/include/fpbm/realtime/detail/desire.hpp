@@ -9,7 +9,6 @@
 #include "fpbm/realtime/detail/tick_references.hpp"
 #include "fpbm/realtime/detail/turns.hpp"
 #include "fpbm/simulate/detail/closed_loop.hpp"
-#include "fpbm/singular/detail/damped_gram.hpp"
 
 namespace fpbm {
 
@@ -29,16 +28,6 @@ void begin_correction(const Arm& arm, TrackerState& state, const Twist& error, c
                                                                         [](int) { return Scalar(0); });
 }
 
-/// Motion of the scheme. σ is from the factorisation of the scheme, or from a factorisation of JJᵀ if the scheme does
-/// not report σ.
-template <typename Loop, typename Target, typename Result>
-void resolve(Loop& loop, const Target& reference, Result& result) noexcept {
-  auto dx = Loop::packed(loop.state);
-  result.sigma = -1;
-  result.status = loop.resolve(reference, dx, &result.sigma);
-  if (result.sigma < 0) result.sigma = least_singular_value_bound(first_rows(loop.kinematics));
-}
-
 /// Adds the null-space motion away from shapes. desired: with the rows of the task in the middle of the tick.
 template <typename TrackerState, typename Desired>
 void move_away(TrackerState& state, Desired& desired) noexcept {
@@ -48,7 +37,7 @@ void move_away(TrackerState& state, Desired& desired) noexcept {
 }
 
 /// First step of a tick: the motion of the scheme in the middle of the tick (TickState::update_middle()), with
-/// corrected references (Correction, HeldLevel, LowerLevels). Sets the error, σ and the status of the result. If the
+/// corrected references (Correction, HeldLevel, LowerLevels). Sets the error and the status of the result. If the
 /// status is a failure, the desired motion is the present motion.
 template <typename Arm, typename Scheme, typename TrackerState, typename Space, typename Scalar>
 [[nodiscard]] auto desire(const Arm& arm, const Scheme& scheme, TrackerState& state,
@@ -71,7 +60,7 @@ template <typename Arm, typename Scheme, typename TrackerState, typename Space, 
   if (state.correction.active()) {
     for (auto& stage : references.stages) stage = state.correction(stage);
   }
-  resolve(desired.loop, state.tick.update_middle(desired.loop, references, gains_of<Scalar>(scheme)), result);
+  result.status = desired.loop.resolve(state.tick.update_middle(desired.loop, references, gains_of<Scalar>(scheme)));
   state.tick.reference_change = references.change();
   if (failed(result.status)) return desired;
   desired.u = state.lower_levels.rests() ? state.tick.slowed() : desired.loop.motion();
@@ -90,12 +79,12 @@ template <typename Arm, typename Scheme, typename TrackerState, typename Target>
   Desired<Loop, typename TrackerState::Space, Arm::kDof, Scalar> desired{
       {arm, scheme, {}, measured, filled<JointVector>(measured.q.size())}, reference, measured.qd};
   auto& loop = desired.loop;
-  loop.update(Loop::packed(measured));
+  arm.kinematics(measured.q, measured.qd, loop.kinematics);
   std::array<Target, 1> now{reference};
   remove_turns(arm, loop.kinematics.tip, state.continuous, now);
   result.error = task_error(loop.kinematics, now[0].x);
   begin_correction(arm, state, result.error, loop.kinematics.length);
-  resolve(loop, state.correction(now[0]), result);
+  result.status = loop.resolve(state.correction(now[0]));
   desired.u = loop.qdd;
   return desired;
 }

@@ -75,7 +75,7 @@ struct TrackerState {
   /// Initial result of a tick: the arm has not moved.
   [[nodiscard]] static Result idle(const JointState& joints) noexcept {
     using Twist = Vector<Space::kRows, Scalar>;
-    Result result{{joints.q, joints.qd, filled<JointVector>(joints.q.size()), Status::kOk, Scalar(1), 0, Scalar(0),
+    Result result{{joints.q, joints.qd, filled<JointVector>(joints.q.size()), Status::kOk, Scalar(1), 0,
                    filled<Twist>(Space::kRows)}};
     if constexpr (kIsProduct<Space>) result.scales.fill(Scalar(1));
     return result;

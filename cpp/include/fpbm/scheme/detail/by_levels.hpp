@@ -3,8 +3,8 @@
 #include <tuple>
 #include <utility>
 
-#include "fpbm/core/types.hpp"
 #include "fpbm/core/status.hpp"
+#include "fpbm/core/types.hpp"
 #include "fpbm/geometry/space.hpp"
 #include "fpbm/linalg/detail/level_space.hpp"
 #include "fpbm/linalg/detail/product.hpp"
@@ -49,16 +49,16 @@ struct ByLevels {
   void require_dof(Eigen::Index dof) const { scheme.require_dof(dof); }
 
   /// Joint accelerations [rad/s²], or velocities [rad/s]. A level whose references are not finite is ignored. If the
-  /// first level fails, u does not change. sigma: for the first level, as in AccelerationScheme::resolve(). first: set
+  /// first level fails, u does not change. first: set
   /// to the motion of the first level alone, unless null.
   [[nodiscard]] Status resolve(const Kinematics<Space, kDof, Scalar>& kinematics,
                                const Reference<Space, Scalar>& reference, const State<kDof, Scalar>& state,
-                               JointVector& u, Scalar* sigma = nullptr, JointVector* first = nullptr) const noexcept {
+                               JointVector& u, JointVector* first = nullptr) const noexcept {
     JointVector result;
     bool damped = false;
-    Status status = resolve_levels(kinematics, reference, state, false, damped, result, sigma, first);
+    Status status = resolve_levels(kinematics, reference, state, false, damped, result, first);
     if (damped && !failed(status) && scheme.null_space.template active<Level::kVelocity>()) {
-      status = resolve_levels(kinematics, reference, state, true, damped, result, sigma, first);
+      status = resolve_levels(kinematics, reference, state, true, damped, result, first);
     }
     if (failed(status)) return status;
     if (!is_finite(result)) return Status::kNotFinite;
@@ -73,7 +73,7 @@ struct ByLevels {
   /// remove this part from the level.
   [[nodiscard]] Status resolve_levels(const Kinematics<Space, kDof, Scalar>& kinematics,
                                       const Reference<Space, Scalar>& reference, const State<kDof, Scalar>& state,
-                                      bool apart, bool& damped, JointVector& result, Scalar* sigma,
+                                      bool apart, bool& damped, JointVector& result,
                                       JointVector* first) const noexcept {
     LevelSpace<kDof, Scalar> space(state.q.size());
     JointVector secondary;
@@ -92,7 +92,7 @@ struct ByLevels {
       subtract_drift(kinematics.tick, level, state.qd, r);
       if constexpr (kIndex == 0) {
         result = filled<JointVector>(state.q.size());
-        status = scheme.resolve_rows(TaskEquation<M, kDof, Scalar>{level.J, level.Jd, r, xd}, state, result, sigma);
+        status = scheme.resolve_rows(TaskEquation<M, kDof, Scalar>{level.J, level.Jd, r, xd}, state, result);
         if (first != nullptr) *first = result;
         if (apart) {
           secondary = secondary_motion(level, state.q);

@@ -3,6 +3,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "fpbm/core/detail/has_member.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/path/reference.hpp"
@@ -23,18 +24,9 @@ template <typename Scheme, typename Kinematics_, typename Reference_, typename S
 using ResolveOf = decltype(std::declval<const Scheme&>().resolve(
     std::declval<const Kinematics_&>(), std::declval<const Reference_&>(), std::declval<const State_&>(),
     std::declval<Motion&>()));
-template <typename Scheme, typename Task, typename State_, typename Motion, typename Scalar>
+template <typename Scheme, typename Task, typename State_, typename Motion>
 using ResolveRowsOf = decltype(std::declval<const Scheme&>().resolve_rows(
-    std::declval<const Task&>(), std::declval<const State_&>(), std::declval<Motion&>(), std::declval<Scalar*>()));
-
-/// Whether a scheme has a member: Member<Scheme, Arguments…> is a type.
-template <typename, template <typename...> class Member, typename... Arguments>
-inline constexpr bool kHasMember = false;
-template <template <typename...> class Member, typename... Arguments>
-inline constexpr bool kHasMember<std::void_t<Member<Arguments...>>, Member, Arguments...> = true;
-
-template <typename Scheme, template <typename...> class Member, typename... Arguments>
-inline constexpr bool kHas = kHasMember<void, Member, Scheme, Arguments...>;
+    std::declval<const Task&>(), std::declval<const State_&>(), std::declval<Motion&>()));
 
 /// The members of every scheme. If a member is missing, the compiler prints a message. Always true.
 template <typename Scheme, typename Space, int N, typename Scalar>
@@ -59,9 +51,9 @@ template <typename Scheme, typename Space, int N, typename Scalar>
 /// The additional members of the scheme of a stack, whose first level has M rows. Always true.
 template <typename Scheme, int M, int N, typename Scalar>
 [[nodiscard]] constexpr bool require_members_for_stack() noexcept {
-  static_assert(kHas<Scheme, ResolveRowsOf, TaskEquation<M, N, Scalar>, State<N, Scalar>, Vector<N, Scalar>, Scalar>,
+  static_assert(kHas<Scheme, ResolveRowsOf, TaskEquation<M, N, Scalar>, State<N, Scalar>, Vector<N, Scalar>>,
                 "the scheme of a stack has no member `resolve_rows`: add `template <int M> fpbm::Status resolve_rows("
-                "const fpbm::TaskEquation<M, N>&, const fpbm::State<N>&, fpbm::Vector<N>& u, double* sigma = nullptr) "
+                "const fpbm::TaskEquation<M, N>&, const fpbm::State<N>&, fpbm::Vector<N>& u) "
                 "const noexcept`");
   static_assert(kHas<Scheme, NullSpaceOf>,
                 "the scheme of a stack has no member `null_space`: add `fpbm::NullSpace<N> null_space`, the secondary "

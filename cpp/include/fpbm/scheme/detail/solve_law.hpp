@@ -4,8 +4,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "fpbm/core/types.hpp"
 #include "fpbm/core/status.hpp"
+#include "fpbm/core/types.hpp"
 #include "fpbm/linalg/detail/sums.hpp"
 #include "fpbm/scheme/detail/factor_solver.hpp"
 #include "fpbm/scheme/detail/self_motion_solver.hpp"
@@ -30,17 +30,15 @@ namespace fpbm {
 template <typename Value, typename Scheme, int M, int N, typename Scalar>
 [[nodiscard, gnu::flatten]] Status solve_by_factors(const Scheme& scheme, const TaskEquation<M, N, Scalar>& task,
                                                     const SecondaryMotion<Scheme::kLevel, N, Scalar>& z,
-                                                    const Vector<N, Scalar>* undamped, Vector<N, Scalar>& u,
-                                                    Scalar* sigma) noexcept {
+                                                    const Vector<N, Scalar>* undamped, Vector<N, Scalar>& u) noexcept {
   const auto& weights = scheme.weights;
   DampedGram<M, N, Value> gram(scheme.singular, task.J);
   Status status;
   if constexpr (std::is_same_v<Value, Scalar>) {
     const Matrix<N, M, Scalar> Jt = transpose_of(task.J);
-    status = gram.factor(weights.root_transpose(Jt), weights.template inverse_bound<Scalar>(),
-                         weights.is_unit() ? sigma : nullptr);
+    status = gram.factor(weights.root_transpose(Jt), weights.template inverse_bound<Scalar>());
   } else {
-    status = gram.factor(weights.with_unit(task.J), Scalar(1), sigma);
+    status = gram.factor(weights.with_unit(task.J), Scalar(1));
   }
   if (undamped != nullptr && !gram.damps()) {
     u = *undamped;
@@ -60,7 +58,7 @@ template <typename Value, typename Scheme, int M, int N, typename Scalar>
 template <int kTurns, typename Scheme, int M, int N, typename Scalar>
 [[nodiscard]] Status solve_by_factors(const Scheme& scheme, const TaskEquation<M, N, Scalar>& task,
                                       const Scalar& length, const SecondaryMotion<Scheme::kLevel, N, Scalar>& z,
-                                      const Vector<N, Scalar>* undamped, Vector<N, Scalar>& u, Scalar* sigma) noexcept {
+                                      const Vector<N, Scalar>* undamped, Vector<N, Scalar>& u) noexcept {
   if constexpr (kTurns > 0) {
     const auto in_metres = [&](auto A) noexcept {
       for (Eigen::Index j = 0; j < A.cols(); ++j) {
@@ -70,37 +68,35 @@ template <int kTurns, typename Scheme, int M, int N, typename Scalar>
     };
     const auto J = in_metres(task.J), Jd = in_metres(task.Jd);
     const auto b = in_metres(task.b), xd = in_metres(task.xd);
-    sigma = nullptr;  // The bound is on σ_min(J), without a length.
-    return solve_by_factors<0>(scheme, TaskEquation<M, N, Scalar>{J, Jd, b, xd}, length, z, undamped, u, sigma);
+    return solve_by_factors<0>(scheme, TaskEquation<M, N, Scalar>{J, Jd, b, xd}, length, z, undamped, u);
   } else {
     constexpr bool kUnit = std::is_same_v<std::decay_t<decltype(scheme.weights)>, UnitWeights>;
     if constexpr (Scheme::kLevel == Level::kVelocity || kUnit) {
-      return solve_by_factors<Scalar>(scheme, task, z, undamped, u, sigma);
+      return solve_by_factors<Scalar>(scheme, task, z, undamped, u);
     } else {
       if constexpr (!kInLanes<Scalar>) {  // Each lane may have its own alpha.
         if (scheme.alpha == Scalar(1) || scheme.weights.is_unit()) {
-          return solve_by_factors<Scalar>(scheme, task, z, undamped, u, sigma);
+          return solve_by_factors<Scalar>(scheme, task, z, undamped, u);
         }
       }
-      return solve_by_factors<Pair<Scalar>>(scheme, task, z, undamped, u, sigma);
+      return solve_by_factors<Pair<Scalar>>(scheme, task, z, undamped, u);
     }
   }
 }
 
 /// Sets u to the joint motion of the law: velocities or accelerations, by level. The last kTurns rows of the task are
 /// angular. length: characteristic length of the arm [m]. Returns kDamped if damping acts. If the status is a failure,
-/// u does not change. sigma, unless null, is set to the lower bound 1/√tr((JJᵀ)⁻¹) on σ_min(J) if the factorisation
-/// for u provides this bound.
+/// u does not change.
 ///
 /// The SelfMotionSolver answers without damping, before it is known whether damping acts. If damping does not act, this
 /// answer is returned in all cases, so that a scheme with damping returns the same bits as a scheme without damping.
 template <int kTurns, typename Scheme, int M, int N, typename Scalar>
 [[nodiscard, gnu::always_inline]] inline Status solve_law(const Scheme& scheme, const TaskEquation<M, N, Scalar>& task,
                                                           const Scalar& length, const State<N, Scalar>& state,
-                                                          Vector<N, Scalar>& u, Scalar* sigma) noexcept {
+                                                          Vector<N, Scalar>& u) noexcept {
   const SecondaryMotion<Scheme::kLevel, N, Scalar> z{scheme.null_space, state};
   if constexpr (!kHasSelfMotion<M, N>) {
-    return solve_by_factors<kTurns, Scheme, M, N, Scalar>(scheme, task, length, z, nullptr, u, sigma);
+    return solve_by_factors<kTurns, Scheme, M, N, Scalar>(scheme, task, length, z, nullptr, u);
   } else {
     const auto& damping = scheme.singular;
     const Mask<Scalar> undamped = damping.radius() == Scalar(0);
@@ -138,8 +134,6 @@ template <int kTurns, typename Scheme, int M, int N, typename Scalar>
       if constexpr (kInLanes<Scalar>) {
         found = found && !answered;
         for (int i = 0; i < N; ++i) where(found, answer(i)) = result(i);
-      } else {
-        if (sigma != nullptr) *sigma = Scalar(1) / std::sqrt(motion.inverse_trace());
       }
       answered = answered || found;
       regular = regular || (found && bounded);
@@ -149,7 +143,7 @@ template <int kTurns, typename Scheme, int M, int N, typename Scalar>
       return Status::kOk;
     }
     const Vector<N, Scalar>* const known = !kInLanes<Scalar> && all_of(answered) ? &answer : nullptr;
-    const Status status = solve_by_factors<kTurns>(scheme, task, length, z, known, u, sigma);
+    const Status status = solve_by_factors<kTurns>(scheme, task, length, z, known, u);
     if constexpr (kInLanes<Scalar>) {
       const Mask<Scalar> holds = regular || (answered && !isnan(u(0)));
       for (int i = 0; i < N; ++i) where(holds, u(i)) = answer(i);

@@ -3,8 +3,8 @@
 #include <type_traits>
 
 #include "fpbm/core/detail/parts.hpp"
-#include "fpbm/core/types.hpp"
 #include "fpbm/core/status.hpp"
+#include "fpbm/core/types.hpp"
 #include "fpbm/linalg/detail/entrywise.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/path/reference.hpp"
@@ -39,18 +39,8 @@ struct ClosedLoop {
     return x;
   }
 
-  /// dX/dt at X. Sets kinematics, state and qdd to the values at X. At velocity level, state.qd is the result of the
-  /// scheme, and qdd is not used.
+  /// dX/dt at X. Sets kinematics, state and motion to the values at X.
   [[nodiscard]] Status evaluate(const Reference<Space, Scalar>& reference, const X& x, X& dx) noexcept {
-    update(x);
-    return resolve(reference, dx);
-  }
-
-  /// Result of the scheme in the last resolve() [rad/s²], or [rad/s] at velocity level.
-  [[nodiscard]] const Vector<N, Scalar>& motion() const noexcept { return kSecondOrder ? qdd : state.qd; }
-
-  /// First part of evaluate(): state and kinematics at X.
-  void update(const X& x) noexcept {
     state.q = column(x, 0);
     if constexpr (kSecondOrder) {
       state.qd = column(x, 1);
@@ -58,43 +48,36 @@ struct ClosedLoop {
     } else {
       arm.kinematics(state.q, kinematics);
     }
-  }
-
-  /// Second part of evaluate(): dX/dt at the X of update(). sigma: null, or the address for a lower bound on σ_min(J)
-  /// of the first level. If the scheme does not provide the bound on σ_min(J), *sigma does not change.
-  [[nodiscard]] Status resolve(const Reference<Space, Scalar>& reference, X& dx, Scalar* sigma = nullptr) noexcept {
-    Status status;
+    const Status status = resolve(reference);
+    if (failed(status)) return status;
     if constexpr (kSecondOrder) {
-      status = resolve(scheme, reference, qdd, sigma, 0);
-      if (failed(status)) return status;
       set_column(dx, 0, state.qd);
       set_column(dx, 1, qdd);
     } else {
-      Vector<N, Scalar> qd;  // Not state.qd, which the scheme may read.
-      status = resolve(scheme, reference, qd, sigma, 0);
-      if (failed(status)) return status;
-      state.qd = qd;
-      set_column(dx, 0, qd);
+      set_column(dx, 0, state.qd);
     }
     return status;
   }
 
- private:
-  /// Result u of the scheme. A scheme may omit the argument sigma.
-  template <typename Scheme_>
-  [[nodiscard]] auto resolve(const Scheme_& s, const Reference<Space, Scalar>& reference, Vector<N, Scalar>& u,
-                             Scalar* sigma, int) noexcept
-      -> decltype(s.resolve(kinematics, reference, state, u, sigma)) {
-    if constexpr (kLevelsOf<Space> == 1) {
-      return s.resolve(kinematics, reference, state, u, sigma);
-    } else {
-      return s.resolve(kinematics, reference, state, u, sigma, &first);
-    }
+  /// Computes motion() from the state and its kinematics. If the status is a failure, motion() does not change.
+  [[nodiscard]] Status resolve(const Reference<Space, Scalar>& reference) noexcept {
+    auto u = motion();  // Not state.qd, which the scheme may read.
+    const Status status = resolve(reference, u);
+    (kSecondOrder ? qdd : state.qd) = u;
+    return status;
   }
-  template <typename Scheme_>
-  [[nodiscard]] Status resolve(const Scheme_& s, const Reference<Space, Scalar>& reference, Vector<N, Scalar>& u,
-                               Scalar*, long) noexcept {
-    return s.resolve(kinematics, reference, state, u);
+
+  /// Result of the scheme in the last resolve() [rad/s²], or [rad/s] at velocity level.
+  [[nodiscard]] const Vector<N, Scalar>& motion() const noexcept { return kSecondOrder ? qdd : state.qd; }
+
+ private:
+  /// Result u of the scheme.
+  [[nodiscard]] Status resolve(const Reference<Space, Scalar>& reference, Vector<N, Scalar>& u) noexcept {
+    if constexpr (kLevelsOf<Space> == 1) {
+      return scheme.resolve(kinematics, reference, state, u);
+    } else {
+      return scheme.resolve(kinematics, reference, state, u, &first);
+    }
   }
 };
 

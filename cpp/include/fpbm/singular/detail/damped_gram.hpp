@@ -59,11 +59,8 @@ class DampedGram {
   DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>&& J) = delete;
 
   /// Factorises JC, given rows = (JC)ᵀ and an upper bound on the largest eigenvalue of W⁻¹ (for a pair: of the first
-  /// W). Returns kDamped if Δ is not zero, or the reason for a missing factorisation. If J has a factorisation and
-  /// damping is on, sets *sigma, unless sigma is null, to the lower bound 1/√tr((JJᵀ)⁻¹) on σ_min(J), for which the
-  /// first W must be I.
-  [[nodiscard]] Status factor(const Matrix<N, M, Value>& rows, Scalar inverse_bound,
-                              [[maybe_unused]] Scalar* sigma = nullptr) noexcept {
+  /// W). Returns kDamped if Δ is not zero, or the reason for a missing factorisation.
+  [[nodiscard]] Status factor(const Matrix<N, M, Value>& rows, Scalar inverse_bound) noexcept {
     const Status status = factor_.factor(rows);
     if (all_of(damping_.radius() == Scalar(0)) || status == Status::kNotFinite) return status;
 
@@ -76,7 +73,6 @@ class DampedGram {
       factor_.set_nan_unless(regular);
       return status;
     } else {
-      if (sigma != nullptr && status == Status::kOk) *sigma = Scalar(1) / std::sqrt(trace);
       return status == Status::kOk && regular ? status : damped(rows, threshold, bound, status);
     }
   }
