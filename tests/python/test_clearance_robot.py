@@ -375,6 +375,8 @@ def test_a_job_has_the_clearance_of_its_robot(tmp_path: Path) -> None:
         ],
     }
     motion = prepare(job)
-    assert motion.clearance == fp.Clearance.from_urdf(file, locked={"waist": 0.2}, per_link=1)
+    (clearance,) = motion.bounds
+    assert clearance == fp.Clearance.from_urdf(file, locked={"waist": 0.2}, per_link=1)
     assert isinstance(motion.arm, fp.Robot)
-    assert motion.clearance.pairs(motion.arm)
+    assert isinstance(clearance, fp.Clearance)
+    assert clearance.pairs(motion.arm)

@@ -96,7 +96,9 @@ def test_joints_return_with_a_clearance(level: str, jerk: float) -> None:
 
     check(tracker, tick, limits, 1e-3, 4.0)
     assert min(nearest) >= 0.01 - 1e-9
-    with pytest.raises(fp.ParameterError, match=r"qd0\[0\] = 0.1: must be 0 before a start outside the bounds"):
+    with pytest.raises(
+        fp.ParameterError, match=r"qd0\[0\] = 0.1: must be 0 before a start outside the limits with bounds"
+    ):
         fp.Tracker(panda, laws(7)[level], q0, qd0=[0.1] * 7, limits=limits, bounds=[clearance], recover_start=True)
 
 

@@ -312,10 +312,10 @@ def test_a_file_that_names_other_files_is_rejected(table, run, tmp_path):
 @pytest.mark.parametrize(
     ("change", "members", "words"),
     [
-        ({"version": 3}, {}, r"format 3: must be 2, .*: upgrade fpbm_cpp"),
-        ({"version": 1}, {}, r"format 1: must be 2, .*: make the run again"),
+        ({"version": 4}, {}, r"format 4: must be 3, .*: upgrade fpbm_cpp"),
+        ({"version": 2}, {}, r"format 2: must be 3, .*: make the run again"),
         ({"version": "1"}, {}, "has the format 'fpbm_cpp run' '1'"),
-        ({"format": "other"}, {}, "has the format 'other' 2"),
+        ({"format": "other"}, {}, "has the format 'other' 3"),
         ({"status": {"code": "BORED", "time": 1.0, "q": []}}, {}, "BORED"),
         ({"task": "dance"}, {}, "task = 'dance'"),
         ({"options": 7}, {}, "must be a valid run"),

@@ -28,7 +28,7 @@ using WriteRows = decltype(std::declval<Bound&>().rows(std::declval<const Next&>
 template <typename Bound, typename From, typename Stop_>
 using Accepts = decltype(bool{
     std::declval<Bound&>().accepts(std::declval<const From&>(), std::declval<const Stop_&>())});
-/// Of a Clearance, which knows shapes: near_distance_sum(), moves_away() and away(q).
+/// Member of a bound that knows shapes, as a Clearance. The bound also has near_distance_sum() and away(q).
 template <typename Bound>
 using MovesAway = decltype(std::declval<const Bound&>().moves_away());
 
