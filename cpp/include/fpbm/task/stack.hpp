@@ -23,7 +23,8 @@ template <typename Task>
 
 /// Tasks on one level, with equal priority.
 template <typename... Tasks>
-struct TaskLevel : private TaskCheck<Tasks>... {
+struct TaskLevel {
+  static_assert(((sizeof(TaskCheck<Tasks>) > 0) && ...));
   static constexpr int kRows = ((Tasks::kRows == Eigen::Dynamic) || ...) ? Eigen::Dynamic : (Tasks::kRows + ...);
   std::tuple<Tasks...> tasks;
 
