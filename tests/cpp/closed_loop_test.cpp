@@ -28,10 +28,9 @@ void on_the_planar_arm(const Scheme& scheme, Check&& check) {
   EXPECT_EQ(loop.state.q, x.col(0));
   check(x, dx, kinematics, reference, loop);
 
-  typename Loop::X halves = Loop::X::Zero();
-  loop.update(x);
-  EXPECT_EQ(loop.resolve(reference, halves), Status::kOk);
-  EXPECT_EQ(halves, dx) << "update() and resolve() are evaluate()";
+  const Vector<4> motion = loop.motion();
+  EXPECT_EQ(loop.resolve(reference), Status::kOk);
+  EXPECT_EQ(loop.motion(), motion) << "resolve() is the second part of evaluate()";
 
   x.setZero();
   const typename Loop::X before = dx;

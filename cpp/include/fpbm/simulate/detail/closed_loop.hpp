@@ -31,14 +31,6 @@ struct ClosedLoop {
   /// Motion of the first level alone, if the tasks have several levels [rad/s²], or [rad/s] at velocity level.
   std::conditional_t<kLevelsOf<Space> == 1, NoMotion, Vector<N, Scalar>> first{};
 
-  /// X for a state.
-  [[nodiscard]] static X packed(const State<N, Scalar>& state) noexcept {
-    X x(state.q.size(), kSecondOrder ? 2 : 1);
-    set_column(x, 0, state.q);
-    if constexpr (kSecondOrder) set_column(x, 1, state.qd);
-    return x;
-  }
-
   /// dX/dt at X. Sets kinematics, state and motion to the values at X.
   [[nodiscard]] Status evaluate(const Reference<Space, Scalar>& reference, const X& x, X& dx) noexcept {
     state.q = column(x, 0);
