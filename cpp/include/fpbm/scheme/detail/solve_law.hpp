@@ -33,15 +33,18 @@ template <typename Value, typename Scheme, int M, int N, typename Scalar>
                                                     const Vector<N, Scalar>* undamped, Vector<N, Scalar>& u,
                                                     Scalar* sigma) noexcept {
   const auto& weights = scheme.weights;
-  DampedGram<M, N, Value> gram(scheme.singular, task.J);
-  Status status;
-  if constexpr (std::is_same_v<Value, Scalar>) {
-    const Matrix<N, M, Scalar> Jt = transpose_of(task.J);
-    status = gram.factor(weights.root_transpose(Jt), weights.template inverse_bound<Scalar>(),
-                         weights.is_unit() ? sigma : nullptr);
-  } else {
-    status = gram.factor(weights.with_unit(task.J), Scalar(1), sigma);
-  }
+  constexpr bool kPairs = !std::is_same_v<Value, Scalar>;
+  const auto Jt = transpose_of(task.J);
+  const Matrix<N, M, Value>& rows = [&]() noexcept -> decltype(auto) {
+    if constexpr (kPairs) {
+      return weights.with_unit(task.J);
+    } else {
+      return weights.root_transpose(Jt);
+    }
+  }();
+  DampedGram<M, N, Value> gram(scheme.singular, task.J, rows);
+  const Scalar bound = kPairs ? Scalar(1) : weights.template inverse_bound<Scalar>();
+  const Status status = gram.factor(bound, kPairs || weights.is_unit() ? sigma : nullptr);
   if (undamped != nullptr && !gram.damps()) {
     u = *undamped;
     return Status::kOk;
@@ -109,7 +112,7 @@ template <int kTurns, typename Scheme, int M, int N, typename Scalar>
     Vector<N, Scalar> answer;
     SelfMotion<M, N, Scalar> motion;
     const auto solve = [&](Vector<N, Scalar>& result) noexcept {
-      const auto solve_with = [&](const auto& y) noexcept {
+      const auto solve_with = [&](const auto& y) noexcept __attribute__((always_inline)) {
         const Vector<N, Scalar> v = motion.null();
         const Vector<N, Scalar>& Wv = scheme.weights.times(v);
         const SelfMotionSolver solver(motion, scheme.weights, task.Jd, y, v, Wv);

@@ -53,18 +53,18 @@ class DampedGram {
   using Value = Value_;
   using Scalar = typename ScalarOf<Value>::type;
 
-  /// J must outlive the DampedGram.
-  DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J) noexcept
-      : damping_(damping), J_(J) {}
-  DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>&& J) = delete;
+  /// J and rows = (JC)ᵀ must outlive the DampedGram.
+  DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J,
+             const Matrix<N, M, Value>& rows) noexcept
+      : damping_(damping), J_(J), rows_(rows) {}
+  DampedGram(const SingularDamping<Scalar>&, const Matrix<M, N, Scalar>&&, const Matrix<N, M, Value>&) = delete;
+  DampedGram(const SingularDamping<Scalar>&, const Matrix<M, N, Scalar>&, const Matrix<N, M, Value>&&) = delete;
 
-  /// Factorises JC, given rows = (JC)ᵀ and an upper bound on the largest eigenvalue of W⁻¹ (for a pair: of the first
-  /// W). Returns kDamped if Δ is not zero, or the reason for a missing factorisation. If J has a factorisation and
-  /// damping is on, sets *sigma, unless sigma is null, to the lower bound 1/√tr((JJᵀ)⁻¹) on σ_min(J), for which the
-  /// first W must be I.
-  [[nodiscard]] Status factor(const Matrix<N, M, Value>& rows, Scalar inverse_bound,
-                              [[maybe_unused]] Scalar* sigma = nullptr) noexcept {
-    const Status status = factor_.factor(rows);
+  /// Factorises JC, given an upper bound on the largest eigenvalue of W⁻¹ (for a pair: of the first W). Returns kDamped
+  /// if Δ is not zero, or the reason for a missing factorisation. If J has a factorisation and damping is on, sets
+  /// *sigma, unless sigma is null, to the lower bound 1/√tr((JJᵀ)⁻¹) on σ_min(J), for which the first W must be I.
+  [[nodiscard]] Status factor(Scalar inverse_bound, [[maybe_unused]] Scalar* sigma = nullptr) noexcept {
+    const Status status = factor_.factor(rows_);
     if (all_of(damping_.radius() == Scalar(0)) || status == Status::kNotFinite) return status;
 
     // Most postures are far from singular, which the factorisation shows: λ_min(JJᵀ) ≥ λ_min(JW⁻¹Jᵀ) / ‖W⁻¹‖.
@@ -77,7 +77,7 @@ class DampedGram {
       return status;
     } else {
       if (sigma != nullptr && status == Status::kOk) *sigma = Scalar(1) / std::sqrt(trace);
-      return status == Status::kOk && regular ? status : damped(rows, threshold, bound, status);
+      return status == Status::kOk && regular ? status : damped(threshold, bound, status);
     }
   }
 
@@ -157,8 +157,7 @@ class DampedGram {
     return command > most ? std::min((command - most) / (Scalar(3) * most), Scalar(1)) : Scalar(0);
   }
 
-  [[nodiscard, gnu::noinline]] Status damped(const Matrix<N, M, Value>& rows, Scalar threshold, Scalar bound,
-                                             Status undamped) noexcept {
+  [[nodiscard, gnu::noinline]] Status damped(Scalar threshold, Scalar bound, Status undamped) noexcept {
     const LostDirections<M, Scalar> lost(gram_of(J_), J_, threshold);
     lost_ = lost.count;
     delta_ = lost.delta;
@@ -167,7 +166,6 @@ class DampedGram {
     const bool known = Value(Scalar(1)) > Value(round_off * round_off * bound) * factor_.inverse_trace();
     fade_ = known ? lost.fade : Scalar(0);
     if (!(lost_ > Scalar(0))) return undamped;
-    rows_ = rows;
     Matrix<M, M, Value> gram = filled<Matrix<M, M, Value>>(J_.rows());  // Lower triangle.
     for (Eigen::Index i = 0; i < J_.rows(); ++i) {
       const Vector<N, Value> row = column(rows_, i);
@@ -189,9 +187,9 @@ class DampedGram {
 
   SingularDamping<Scalar> damping_;
   const Matrix<M, N, Scalar>& J_;
+  const Matrix<N, M, Value>& rows_;
   RowFactor<M, N, Value> factor_;  ///< Factorisation of JC.
   Cholesky<M, Value> damped_;      ///< Factorisation of JW⁻¹Jᵀ + Δ. Set only if Δ ≠ 0.
-  Matrix<N, M, Value> rows_;       ///< (JC)ᵀ. Set only if Δ ≠ 0.
   /// Usual size of a secondary motion [rad/s] or [rad/s²], with which a command is compared if z is small. Not tuned:
   /// Tracker.stops_at_the_workspace_boundary_and_returns has |z| from 1 to 8.
   static constexpr Number<Scalar> kUsual = 1;
