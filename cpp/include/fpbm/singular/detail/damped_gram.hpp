@@ -47,10 +47,9 @@ template <int kTurns, int M, int N, typename Scalar>
 /// Solves systems with J C, where C Cᵀ = W⁻¹, and with the Gram matrix JW⁻¹Jᵀ. If J is nearly singular, damping Δ is
 /// added to the Gram matrix (SingularDamping). With Value = Pair<Scalar>, solves for two different W in parallel. All
 /// rows of J are in metres.
-template <int M, int N, typename Value_>
+template <int M, int N, typename Value>
 class DampedGram {
  public:
-  using Value = Value_;
   using Scalar = typename ScalarOf<Value>::type;
 
   /// J and rows = (JC)ᵀ must outlive the DampedGram.
@@ -84,7 +83,7 @@ class DampedGram {
   /// Solutions after factor().
   template <bool kDamped>
   struct Solutions {
-    using Value = Value_;
+    using Entry = Value;
     static constexpr bool kIsDamped = kDamped;
     const DampedGram& of;
 
@@ -136,12 +135,7 @@ class DampedGram {
   }
 
   /// Whether Δ is not zero. False with lanes, whose solutions are NaN in each lane in which damping may act.
-  [[nodiscard]] bool damps() const noexcept {
-    if constexpr (kInLanes<Scalar>)
-      return false;
-    else
-      return lost_ > Scalar(0);
-  }
+  [[nodiscard]] bool damps() const noexcept { return damps_; }
 
   /// Additional null-space damping [1/s].
   [[nodiscard]] Scalar brake() const noexcept { return damping_.brake() * lost_; }
@@ -165,7 +159,8 @@ class DampedGram {
     const Scalar round_off = kUnknown / damping_.radius();
     const bool known = Value(Scalar(1)) > Value(round_off * round_off * bound) * factor_.inverse_trace();
     fade_ = known ? lost.fade : Scalar(0);
-    if (!(lost_ > Scalar(0))) return undamped;
+    damps_ = lost_ > Scalar(0);
+    if (!damps_) return undamped;
     Matrix<M, M, Value> gram = filled<Matrix<M, M, Value>>(J_.rows());  // Lower triangle.
     for (Eigen::Index i = 0; i < J_.rows(); ++i) {
       const Vector<N, Value> row = column(rows_, i);
@@ -197,6 +192,7 @@ class DampedGram {
   Matrix<M, M, Scalar> delta_;  ///< Δ. Set only if the rows are nearly singular.
   Scalar threshold_{0};         ///< ε². Set only if the rows are nearly singular.
   Scalar lost_{0};              ///< tr Δ/ε², about the number of lost directions.
+  bool damps_ = false;          ///< Whether lost_ > 0.
   Scalar fade_{1};              ///< LostDirections::fade, or 0 if the null space of JC is not known.
 };
 
