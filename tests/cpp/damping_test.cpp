@@ -373,8 +373,8 @@ RealMatrix damped_inverse(const Weights& weights, const SingularDamping<Scalar>&
                           const Matrix<M, N, Scalar>& J) {
   const Matrix<N, M, Scalar> Jt = J.transpose();
   const Matrix<N, M, Scalar> rows = weights.root_transpose(Jt);
-  DampedGram<M, N, Scalar> gram(damping, J);
-  EXPECT_FALSE(failed(gram.factor(rows, weights.template inverse_bound<Scalar>())));
+  DampedGram<M, N, Scalar> gram(damping, J, rows);
+  EXPECT_FALSE(failed(gram.factor(weights.template inverse_bound<Scalar>())));
   Matrix<N, M, Scalar> inverse;
   for (int i = 0; i < M; ++i) {
     const Vector<N, Scalar> column = gram.solved(

@@ -20,21 +20,25 @@ TYPED_TEST_SUITE(Lifetimes, Scalars, );
 
 TYPED_TEST(Lifetimes, of_a_gram_matrix_spans_its_jacobian) {
   using J = Matrix<3, 7, TypeParam>;
-  using Transposed = Eigen::Transpose<const Matrix<7, 3, TypeParam>>;
+  using Rows = Matrix<7, 3, TypeParam>;
+  using Transposed = Eigen::Transpose<const Rows>;
   using Damping = SingularDamping<TypeParam>;
   using Gram = DampedGram<3, 7, TypeParam>;
-  EXPECT_TRUE((std::is_constructible_v<Gram, const Damping&, const J&>));
-  EXPECT_FALSE((std::is_constructible_v<Gram, const Damping&, J>));
-  EXPECT_FALSE((std::is_constructible_v<Gram, const Damping&, const J>));
-  EXPECT_FALSE((std::is_constructible_v<Gram, const Damping&, Transposed>));  // The conversion needs a temporary.
+  EXPECT_TRUE((std::is_constructible_v<Gram, const Damping&, const J&, const Rows&>));
+  EXPECT_FALSE((std::is_constructible_v<Gram, const Damping&, J, const Rows&>));
+  EXPECT_FALSE((std::is_constructible_v<Gram, const Damping&, const J, const Rows&>));
+  EXPECT_FALSE((std::is_constructible_v<Gram, const Damping&, const J&, Rows>));
+  // The conversion needs a temporary.
+  EXPECT_FALSE((std::is_constructible_v<Gram, const Damping&, Transposed, const Rows&>));
 
   // The damping is two numbers, of which Gram keeps a copy.
   J jacobian = J::Identity();
   jacobian(2, 2) = TypeParam(0.125);
+  const Rows rows = jacobian.transpose();
   auto damping = Damping(TypeParam(0.5), TypeParam(2));
-  Gram gram(damping, jacobian);
+  Gram gram(damping, jacobian, rows);
   damping = Damping::off();
-  EXPECT_EQ(gram.factor(jacobian.transpose(), TypeParam(1)), Status::kDamped);
+  EXPECT_EQ(gram.factor(TypeParam(1)), Status::kDamped);
 }
 
 TYPED_TEST(Lifetimes, of_an_anchored_path_spans_the_path) {

@@ -13,7 +13,7 @@ namespace fpbm {
 /// All acceleration-level schemes of the paper, (5), (8), (9), (13) and (16), are this law (docs/equations.md, Unified
 /// law):
 ///
-///   qdd = (1−α) J⁺b + α (J_W⁺b + N_W W⁻¹Jdᵀμ) + N_W z,   μ = (JW⁻¹Jᵀ)⁻¹xd,
+///   qdd = (1−α) J⁺b + α J_W⁺b + N_W (α W⁻¹Jdᵀμ + z),   μ = (JW⁻¹Jᵀ)⁻¹xd,
 ///   b = xdd − Jd qd + k₁ (xd − J qd) + k₂ (x ⊖ f(q)).
 ///
 /// With k₁, k₂ > 0, the tip error e obeys ë + k₁ė + k₂e = 0 for all α and W. MAN(), WMVNAcceleration(), Balanced() and
@@ -64,7 +64,8 @@ struct AccelerationScheme {
     return solve_law<kScaledRows<Position<M>, N>>(*this, task, Scalar(1), state, qdd);
   }
 
-  /// The law, in terms of a solver of the task (scheme/detail/solve_law.hpp).
+  /// The law, in terms of a solver of the task (scheme/detail/solve_law.hpp):
+  /// balanced(α) = (1−α) J⁺b + α J_W⁺b, drift(α) = α W⁻¹Jdᵀμ, project(u, z) = N_W (u + z).
   template <typename Solver, typename Z>
   [[nodiscard, gnu::always_inline]] auto law(const Solver& solver, const Z& z) const noexcept {
     return solver.balanced(alpha) + solver.project(solver.drift(alpha), z);

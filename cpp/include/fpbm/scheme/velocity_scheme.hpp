@@ -56,7 +56,7 @@ struct VelocityScheme {
     return solve_law<kScaledRows<Position<M>, N>>(*this, task, Scalar(1), state, qd);
   }
 
-  /// The law, in terms of a solver of the task (scheme/detail/solve_law.hpp).
+  /// The law, in terms of a solver of the task (scheme/detail/solve_law.hpp): weighted() = J_W⁺v, project(z) = N_W z.
   template <typename Solver, typename Z>
   [[nodiscard, gnu::always_inline]] auto law(const Solver& solver, const Z& z) const noexcept {
     return solver.weighted() + solver.project(z);

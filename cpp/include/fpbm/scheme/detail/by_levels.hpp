@@ -84,10 +84,8 @@ struct ByLevels {
       const auto& level = std::get<kIndex>(kinematics.levels);
       constexpr int M = Stack_::kRows[kIndex];
       if (kIndex > 0 && (failed(status) || !kinematics.enabled[kIndex] || level.rows() == 0)) return;
-      Vector<M, Scalar> xd;
-      Vector<M, Scalar> r;
-      xd.resize(level.rows());
-      r.resize(level.rows());
+      auto xd = filled<Vector<M, Scalar>>(level.rows());
+      auto r = filled<Vector<M, Scalar>>(level.rows());
       command_level<kIndex>(kinematics, reference, xd, r);
       subtract_drift(kinematics.tick, level, state.qd, r);
       if constexpr (kIndex == 0) {

@@ -16,7 +16,7 @@ namespace fpbm {
 /// A joint motion u is represented by y = C⁻¹u. solutions: DampedGram::Solutions.
 template <typename Solutions, typename Weights, int M, int N, typename Scalar>
 class FactorSolver {
-  using Value = typename Solutions::Value;
+  using Value = typename Solutions::Entry;
 
  public:
   FactorSolver(const Solutions& solutions, const Weights& weights, const TaskEquation<M, N, Scalar>& task) noexcept

@@ -32,14 +32,18 @@ template <typename Value, typename Scheme, int M, int N, typename Scalar>
                                                     const SecondaryMotion<Scheme::kLevel, N, Scalar>& z,
                                                     const Vector<N, Scalar>* undamped, Vector<N, Scalar>& u) noexcept {
   const auto& weights = scheme.weights;
-  DampedGram<M, N, Value> gram(scheme.singular, task.J);
-  Status status;
-  if constexpr (std::is_same_v<Value, Scalar>) {
-    const Matrix<N, M, Scalar> Jt = transpose_of(task.J);
-    status = gram.factor(weights.root_transpose(Jt), weights.template inverse_bound<Scalar>());
-  } else {
-    status = gram.factor(weights.with_unit(task.J), Scalar(1));
-  }
+  constexpr bool kPairs = !std::is_same_v<Value, Scalar>;
+  const auto Jt = transpose_of(task.J);
+  const Matrix<N, M, Value>& rows = [&]() noexcept -> decltype(auto) {
+    if constexpr (kPairs) {
+      return weights.with_unit(task.J);
+    } else {
+      return weights.root_transpose(Jt);
+    }
+  }();
+  DampedGram<M, N, Value> gram(scheme.singular, task.J, rows);
+  const Scalar bound = kPairs ? Scalar(1) : weights.template inverse_bound<Scalar>();
+  const Status status = gram.factor(bound);
   if (undamped != nullptr && !gram.damps()) {
     u = *undamped;
     return Status::kOk;
@@ -84,6 +88,20 @@ template <int kTurns, typename Scheme, int M, int N, typename Scalar>
   }
 }
 
+/// The law by a SelfMotionSolver, without damping. y: solution of J y = b, or pairs of solutions for b and xd, without
+/// which the law has no drift.
+template <typename Scheme, int M, int N, typename Scalar, typename Value>
+[[gnu::always_inline]] inline void solve_by_self_motion(const Scheme& scheme, const SelfMotion<M, N, Scalar>& motion,
+                                                        const TaskEquation<M, N, Scalar>& task,
+                                                        const Vector<N, Value>& y,
+                                                        const SecondaryMotion<Scheme::kLevel, N, Scalar>& z,
+                                                        Vector<N, Scalar>& u) noexcept {
+  const Vector<N, Scalar> v = motion.null();
+  const Vector<N, Scalar>& Wv = scheme.weights.times(v);
+  const SelfMotionSolver solver(motion, scheme.weights, task.Jd, y, v, Wv);
+  solver.set(u, scheme.law(solver, z));
+}
+
 /// Sets u to the joint motion of the law: velocities or accelerations, by level. The last kTurns rows of the task are
 /// angular. length: characteristic length of the arm [m]. Returns kDamped if damping acts. If the status is a failure,
 /// u does not change.
@@ -105,18 +123,13 @@ template <int kTurns, typename Scheme, int M, int N, typename Scalar>
     Vector<N, Scalar> answer;
     SelfMotion<M, N, Scalar> motion;
     const auto solve = [&](Vector<N, Scalar>& result) noexcept {
-      const auto solve_with = [&](const auto& y) noexcept {
-        const Vector<N, Scalar> v = motion.null();
-        const Vector<N, Scalar>& Wv = scheme.weights.times(v);
-        const SelfMotionSolver solver(motion, scheme.weights, task.Jd, y, v, Wv);
-        solver.set(result, scheme.law(solver, z));
-      };
       if constexpr (Scheme::kLevel == Level::kAcceleration) {
         if (!all_of(scheme.alpha == Scalar(0))) {
-          return solve_with(motion.solve(side_by_side<M, 1, Scalar>(task.b, task.xd)));
+          const Vector<M, Pair<Scalar>> both = side_by_side<M, 1, Scalar>(task.b, task.xd);
+          return solve_by_self_motion(scheme, motion, task, motion.solve(both), z, result);
         }
       }
-      solve_with(motion.solve(task.b));  // No drift: α = 0, or velocity level.
+      solve_by_self_motion(scheme, motion, task, motion.solve(task.b), z, result);
     };
     for (int kind = 0; kind < motion.kKinds && !all_of(answered); ++kind) {
       Mask<Scalar> found = motion.factor(task.J, kind);

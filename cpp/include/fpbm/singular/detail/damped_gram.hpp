@@ -47,21 +47,22 @@ template <int kTurns, int M, int N, typename Scalar>
 /// Solves systems with J C, where C Cᵀ = W⁻¹, and with the Gram matrix JW⁻¹Jᵀ. If J is nearly singular, damping Δ is
 /// added to the Gram matrix (SingularDamping). With Value = Pair<Scalar>, solves for two different W in parallel. All
 /// rows of J are in metres.
-template <int M, int N, typename Value_>
+template <int M, int N, typename Value>
 class DampedGram {
  public:
-  using Value = Value_;
   using Scalar = typename ScalarOf<Value>::type;
 
-  /// J must outlive the DampedGram.
-  DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J) noexcept
-      : damping_(damping), J_(J) {}
-  DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>&& J) = delete;
+  /// J and rows = (JC)ᵀ must outlive the DampedGram.
+  DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J,
+             const Matrix<N, M, Value>& rows) noexcept
+      : damping_(damping), J_(J), rows_(rows) {}
+  DampedGram(const SingularDamping<Scalar>&, const Matrix<M, N, Scalar>&&, const Matrix<N, M, Value>&) = delete;
+  DampedGram(const SingularDamping<Scalar>&, const Matrix<M, N, Scalar>&, const Matrix<N, M, Value>&&) = delete;
 
-  /// Factorises JC, given rows = (JC)ᵀ and an upper bound on the largest eigenvalue of W⁻¹ (for a pair: of the first
-  /// W). Returns kDamped if Δ is not zero, or the reason for a missing factorisation.
-  [[nodiscard]] Status factor(const Matrix<N, M, Value>& rows, Scalar inverse_bound) noexcept {
-    const Status status = factor_.factor(rows);
+  /// Factorises JC, given an upper bound on the largest eigenvalue of W⁻¹ (for a pair: of the first W). Returns kDamped
+  /// if Δ is not zero, or the reason for a missing factorisation.
+  [[nodiscard]] Status factor(Scalar inverse_bound) noexcept {
+    const Status status = factor_.factor(rows_);
     if (all_of(damping_.radius() == Scalar(0)) || status == Status::kNotFinite) return status;
 
     // Most postures are far from singular, which the factorisation shows: λ_min(JJᵀ) ≥ λ_min(JW⁻¹Jᵀ) / ‖W⁻¹‖.
@@ -73,14 +74,14 @@ class DampedGram {
       factor_.set_nan_unless(regular);
       return status;
     } else {
-      return status == Status::kOk && regular ? status : damped(rows, threshold, bound, status);
+      return status == Status::kOk && regular ? status : damped(threshold, bound, status);
     }
   }
 
   /// Solutions after factor().
   template <bool kDamped>
   struct Solutions {
-    using Value = Value_;
+    using Entry = Value;
     static constexpr bool kIsDamped = kDamped;
     const DampedGram& of;
 
@@ -132,12 +133,7 @@ class DampedGram {
   }
 
   /// Whether Δ is not zero. False with lanes, whose solutions are NaN in each lane in which damping may act.
-  [[nodiscard]] bool damps() const noexcept {
-    if constexpr (kInLanes<Scalar>)
-      return false;
-    else
-      return lost_ > Scalar(0);
-  }
+  [[nodiscard]] bool damps() const noexcept { return damps_; }
 
   /// Additional null-space damping [1/s].
   [[nodiscard]] Scalar brake() const noexcept { return damping_.brake() * lost_; }
@@ -153,8 +149,7 @@ class DampedGram {
     return command > most ? std::min((command - most) / (Scalar(3) * most), Scalar(1)) : Scalar(0);
   }
 
-  [[nodiscard, gnu::noinline]] Status damped(const Matrix<N, M, Value>& rows, Scalar threshold, Scalar bound,
-                                             Status undamped) noexcept {
+  [[nodiscard, gnu::noinline]] Status damped(Scalar threshold, Scalar bound, Status undamped) noexcept {
     const LostDirections<M, Scalar> lost(gram_of(J_), J_, threshold);
     lost_ = lost.count;
     delta_ = lost.delta;
@@ -162,8 +157,8 @@ class DampedGram {
     const Scalar round_off = kUnknown / damping_.radius();
     const bool known = Value(Scalar(1)) > Value(round_off * round_off * bound) * factor_.inverse_trace();
     fade_ = known ? lost.fade : Scalar(0);
-    if (!(lost_ > Scalar(0))) return undamped;
-    rows_ = rows;
+    damps_ = lost_ > Scalar(0);
+    if (!damps_) return undamped;
     Matrix<M, M, Value> gram = filled<Matrix<M, M, Value>>(J_.rows());  // Lower triangle.
     for (Eigen::Index i = 0; i < J_.rows(); ++i) {
       const Vector<N, Value> row = column(rows_, i);
@@ -185,9 +180,9 @@ class DampedGram {
 
   SingularDamping<Scalar> damping_;
   const Matrix<M, N, Scalar>& J_;
+  const Matrix<N, M, Value>& rows_;
   RowFactor<M, N, Value> factor_;  ///< Factorisation of JC.
   Cholesky<M, Value> damped_;      ///< Factorisation of JW⁻¹Jᵀ + Δ. Set only if Δ ≠ 0.
-  Matrix<N, M, Value> rows_;       ///< (JC)ᵀ. Set only if Δ ≠ 0.
   /// Usual size of a secondary motion [rad/s] or [rad/s²], with which a command is compared if z is small. Not tuned:
   /// Tracker.stops_at_the_workspace_boundary_and_returns has |z| from 1 to 8.
   static constexpr Number<Scalar> kUsual = 1;
@@ -195,6 +190,7 @@ class DampedGram {
   Matrix<M, M, Scalar> delta_;  ///< Δ. Set only if the rows are nearly singular.
   Scalar threshold_{0};         ///< ε². Set only if the rows are nearly singular.
   Scalar lost_{0};              ///< tr Δ/ε², about the number of lost directions.
+  bool damps_ = false;          ///< Whether lost_ > 0.
   Scalar fade_{1};              ///< LostDirections::fade, or 0 if the null space of JC is not known.
 };
 
