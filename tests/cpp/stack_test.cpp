@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/SVD>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "fpbm/any/detail/any_path.hpp"
 #include "fpbm/fpbm.hpp"
 
 /// The examples of the paper: parameters as identified from its printed numbers, and an independent solution of each

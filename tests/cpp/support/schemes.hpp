@@ -4,6 +4,7 @@
 #include <string>
 #include <type_traits>
 
+#include "fpbm/any/detail/any_weights.hpp"
 #include "fpbm/fpbm.hpp"
 #include "support/textbook.hpp"
 
