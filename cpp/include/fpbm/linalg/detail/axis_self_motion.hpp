@@ -13,7 +13,8 @@ namespace fpbm {
 ///   K = A_T⁻¹ (2 × 2),   X = K A_R (2 × 4),   S = B_R − B_T X (3 × 4)
 ///   J y = b:   S y_R = b_v − B_T K b_w,   y_T = K b_w − X y_R;      J v = 0:   S ṽ = 0,   v = (−X ṽ, ṽ).
 ///
-/// The elimination is also valid for rows with any other meaning and unit.
+/// The elimination is also valid for rows with any other meaning and unit. With RowFactor instead, `make count` prints
+/// 4,327 instead of 3,839 instructions for step/ur5e/torch/fpbm_damped.
 template <typename Scalar>
 class AxisSelfMotion {
  public:

@@ -17,7 +17,9 @@ namespace fpbm {
 /// Householder reflections make A tridiagonal (Golub and Van Loan, Matrix Computations, 8.3). A Sturm sequence counts
 /// the eigenvalues below the bound. QL steps isolate one eigenvalue after another until all eigenvalues below the bound
 /// are found. The first step has the shift 0, which favours the eigenvalue nearest to zero; the other steps have
-/// Wilkinson's shift. Each eigenvalue needs at most 30 steps, usually three. Accurate to round-off in ‖A‖.
+/// Wilkinson's shift. Each eigenvalue needs at most 30 steps, usually three. Accurate to round-off in ‖A‖. With
+/// Eigen's SelfAdjointEigenSolver instead, `make count` prints 23,594 instead of 13,397 instructions for
+/// step/panda/pose/fpbm_damped_singular.
 template <int M, typename Scalar = double>
 class EigenpairsBelow {
  public:

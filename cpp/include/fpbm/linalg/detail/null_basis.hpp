@@ -19,7 +19,8 @@ inline constexpr int kNullity = N == Eigen::Dynamic ? Eigen::Dynamic : N - M;
 ///
 /// The remainder of a row is the row minus its projection on the rows that are already eliminated. A row whose
 /// remainder is round-off error does not count for the rank. Eigen's HouseholderQR, which does not determine the rank,
-/// takes 1.4 to 3.3 times as long (3 × 7 and 2 × 4).
+/// takes 1.4 to 3.3 times as long (3 × 7 and 2 × 4). With LevelSpace instead, remainders below 1e-9 count as zero
+/// (Remainders), and `make count` prints 7,808 instead of 7,633 instructions for loop/panda/position/limited.
 template <int M, int N, typename Scalar>
 class RowSpace {
  public:

@@ -19,8 +19,10 @@ namespace fpbm {
 ///
 /// L is the exact factor of a matrix that equals A up to round-off. The error of Q is the round-off times the condition
 /// number of A (Björck, "Solving linear least squares problems by Gram-Schmidt orthogonalization", 1967). The condition
-/// number of A therefore enters the solutions once, and not squared as with a factorisation of AAᵀ. Needs M divisions
-/// and no square root. With Value = Pair<Scalar>, factorises two matrices in parallel.
+/// number of A therefore enters the solutions once, and not squared as with a factorisation of AAᵀ
+/// (`bench_accuracy` prints an error of 2e-12 for the position of a Panda at a condition number of 10⁵, see
+/// bench/README.md). Needs M divisions and no square root. With Value = Pair<Scalar>, factorises two matrices in
+/// parallel.
 template <int M, int N, typename Value>
 class RowFactor {
  public:

@@ -11,8 +11,8 @@ namespace fpbm {
 /// Factorisation of the task Jacobian J (M × N) of an arm with one self-motion, N = M + 1, without JJᵀ. Gives the
 /// self-motion v with J v = 0, and a solution y of J y = b for any b (docs/equations.md, Degree of redundancy 1).
 ///
-/// The condition number of J enters the round-off error once, and not squared. All specialisations have the same
-/// functions:
+/// The condition number of J enters the round-off error once, and not squared. With RowFactor instead, `make count`
+/// prints 4,699 instead of 3,253 instructions for step/panda/pose/fpbm. All specialisations have the same functions:
 ///   factor(J, kind, threshold)     false if the factorisation `kind`, 0 to kKinds − 1, is not accurate, or if |v|² is
 ///                                  not more than threshold times the largest possible |v|²
 ///   null()                         v
