@@ -167,9 +167,9 @@ fpbm::Clearance<7> any_clearance(Bytes& bytes) {
   return {chain, capsules, obstacles, bytes.chance(128) ? 0.0 : bytes.spread(1e-4, 0.05), never_collide};
 }
 
-/// bounds: none, or the clearance of the arm.
+/// further: no bounds, or the clearance of the arm.
 template <typename Tracker_, typename Arm, typename Space, typename Scheme, typename... Given>
-void run_tracker(Bytes& bytes, const Arm& arm, Space space, const Scheme& scheme, bool wild, const Given&... bounds) {
+void run_tracker(Bytes& bytes, const Arm& arm, Space space, const Scheme& scheme, bool wild, const Given&... further) {
   constexpr int N = Arm::kDof;
   fpbm::TrackerOptions<> options;
   options.dt = bytes.spread(1e-4, 2e-2);
@@ -184,8 +184,8 @@ void run_tracker(Bytes& bytes, const Arm& arm, Space space, const Scheme& scheme
   const auto bounds = bytes.chance(64) ? arm.limits() : any_limits<N>(bytes, arm.dof(), wild);
   const auto start = any_start<N>(bytes, bounds, wild);
   const fpbm::Limits<Scheme::kLevel, N> limits(bounds, options.dt);
-  Tracker_ tracker(arm, space, scheme, start, options, limits, fpbm::Vector<N>::Zero(arm.dof()), bounds...);
-  Tracker_ twin(arm, space, scheme, start, options, limits, fpbm::Vector<N>::Zero(arm.dof()), bounds...);
+  Tracker_ tracker(arm, space, scheme, start, options, limits, fpbm::Vector<N>::Zero(arm.dof()), further...);
+  Tracker_ twin(arm, space, scheme, start, options, limits, fpbm::Vector<N>::Zero(arm.dof()), further...);
   // From a huge tick or start, the arm cannot brake without overflow.
   if (!(options.dt > 1e-9 && options.dt < 1e9 && start.q.norm() < 1e100 && start.qd.norm() < 1e100)) return;
   const Keeper<N> keeper{limits.bounds(), options.dt};

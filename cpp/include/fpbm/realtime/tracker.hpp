@@ -40,6 +40,7 @@ class Tracker {
  public:
   using Scalar = typename Arm::Scalar;
   static constexpr int N = Arm::kDof;
+  static_assert(require_members<Scheme, Space, N, Scalar>());
   static constexpr Level kLevel = Scheme::kLevel;
   static constexpr bool kBounded = !std::is_same_v<Bounds_, Bounds<>>;
   static constexpr bool kHasLevels = kLevelsOf<Space> != 1;

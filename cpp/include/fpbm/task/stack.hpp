@@ -24,7 +24,7 @@ template <typename Task>
 /// Tasks on one level, with equal priority.
 template <typename... Tasks>
 struct TaskLevel {
-  static_assert(((sizeof(TaskCheck<Tasks>) > 0) && ...));
+  static_assert((require_task_members<Tasks>() && ...));
   static constexpr int kRows = ((Tasks::kRows == Eigen::Dynamic) || ...) ? Eigen::Dynamic : (Tasks::kRows + ...);
   std::tuple<Tasks...> tasks;
 

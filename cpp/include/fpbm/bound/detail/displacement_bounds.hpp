@@ -27,8 +27,9 @@ class DisplacementBounds {
     if (!pair.world) {
       Bound bound;
       bound.add(shapes.robot(), first.levers, pair.by_first, displacement);
-      if (pair.by_second != 0)
+      if (pair.by_second != 0) {
         bound.add(shapes.robot(), shapes.bodies()[pair.second].levers, pair.by_second, displacement);
+      }
       return bound;
     }
     if (is_known_[pair.first] == 0) {

@@ -20,14 +20,16 @@ using Bind = decltype(std::declval<Task&>().bind(std::declval<const Robot&>()));
 
 }  // namespace task_member
 
-/// States in one sentence which member a task type lacks. docs/tasks.md (Custom task types) lists the members.
+/// The members of every task (docs/tasks.md, Custom task types). If a member is missing, the compiler prints a message.
+/// Always true.
 template <typename Task>
-struct TaskCheck {
+[[nodiscard]] constexpr bool require_task_members() noexcept {
   static_assert(kHas<Task, task_member::ScalarOf>, "a task needs `using Scalar = double` or another scalar type");
   static_assert(kHas<Task, task_member::SpaceOf>, "a task needs `using Space`, the space of its points and errors");
   static_assert(kHas<Task, task_member::Rows>, "a task needs `static constexpr int kRows`, its number of rows");
   static_assert(kHas<Task, task_member::Whole>, "a task needs `static constexpr bool kWhole`: whether S is diagonal");
   static_assert(kHas<Task, task_member::Gains>, "a task needs `fpbm::TaskGains<> gains`");
-};
+  return true;
+}
 
 }  // namespace fpbm
