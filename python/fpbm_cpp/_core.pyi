@@ -588,11 +588,6 @@ class Tick:
         For a stack: task scale of each level, from 0 to 1, shape (levels,); else None.
         """
     @property
-    def sigma(self) -> float:
-        """
-        Lower bound on the least singular value of J at the tick's start, tight within a factor sqrt(m).
-        """
-    @property
     def status(self) -> Status:
         """
         Status of the tick; if the tick failed, the reason why the arm brakes.
@@ -673,12 +668,10 @@ class Tracker:
     measured_delay : int
         Largest age of the states for resolve_measured [ticks]: the time from the measurement to the start of the tick in
         which the robot realises the result. 0: exact present states, as in a simulation.
-    clearance : Clearance, optional
-        Self-collision and obstacles that the arm avoids: while obstacles are at rest, no checked pair comes closer than the
-        margin, for every reference. A tick is executed only if the arm can then stop before all shapes; otherwise the arm
-        brakes immediately.
-    bounds : sequence of TaskBounds
-        Bounds on task coordinates: walls for points of links, cones for axes, speeds.
+    bounds : sequence of Clearance and TaskBounds
+        A Clearance: self-collision and obstacles that the arm avoids. While obstacles are at rest, no checked pair comes
+        closer than the margin, for every reference. TaskBounds: walls for points of links, cones for axes, speeds. A tick is
+        executed only if the arm can then stop within all bounds; otherwise the arm brakes immediately.
     recover_start : bool
         Whether the start may be outside the joints' ranges, or too fast for their bounds. The joints then return within the
         bounds on velocity, acceleration and jerk, and the other joints follow the task.
@@ -686,8 +679,8 @@ class Tracker:
     Raises
     ------
     ParameterError
-        If an argument is out of range, a limit is missing, or the start violates a limit, a bound or the clearance; with
-        recover_start, the start may violate limits.
+        If an argument is out of range, a limit is missing, or the start violates a limit or a bound; with recover_start,
+        the start may violate limits.
     """
     def __init__(
         self,
@@ -711,7 +704,6 @@ class Tracker:
         recovery: bool = True,
         keep_first_level: bool = False,
         measured_delay: typing.SupportsInt | typing.SupportsIndex = 3,
-        clearance: typing.Any = None,
         bounds: typing.Any = (),
         recover_start: bool = False,
     ) -> None: ...
@@ -824,6 +816,11 @@ class Tracker:
     def qdd(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Joint accelerations of the last tick [rad/s^2].
+        """
+    @property
+    def sigma(self) -> float:
+        """
+        Lower bound on the least singular value of J of the tracker's own state, tight within a factor sqrt(m); for a stack, of the first level.
         """
     @property
     def tip(self) -> typing.Any:
