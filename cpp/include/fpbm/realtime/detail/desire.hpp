@@ -61,8 +61,11 @@ template <typename Arm, typename Scheme, typename TrackerState, typename Space, 
     for (auto& stage : references.stages) stage = state.correction(stage);
   }
   result.status = desired.loop.resolve(state.tick.update_middle(desired.loop, references, gains_of<Scalar>(scheme)));
+  if (failed(result.status)) {
+    state.tick.reference_change = filled<Vector<Space::kRows, Scalar>>(Space::kRows);  // Maybe not finite.
+    return desired;
+  }
   state.tick.reference_change = references.change();
-  if (failed(result.status)) return desired;
   desired.u = state.lower_levels.rests() ? state.tick.slowed() : desired.loop.motion();
   if (state.bounds.moves_away()) move_away(state, desired);
   return desired;
