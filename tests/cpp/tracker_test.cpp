@@ -417,6 +417,7 @@ void expect_to_brake_on_nonsense(const Scheme& scheme) {
     if (nonsense != 1e308) {
       EXPECT_EQ(tracker.tick(bad).status, Status::kNotFinite);
       EXPECT_EQ(tracker.state().qd.norm(), 0.0);
+      EXPECT_FALSE(failed(tracker.tick(target).status)) << "the next tick has a good reference";
     }
   }
   for (int i = 0; i < 6000; ++i) checked_tick(tracker, home);
