@@ -6,6 +6,7 @@
 
 #include "fpbm/bound/detail/joint_displacement.hpp"
 #include "fpbm/bound/detail/next_motion.hpp"
+#include "fpbm/limits/detail/rows.hpp"
 
 namespace fpbm {
 
