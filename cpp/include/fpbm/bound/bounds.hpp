@@ -35,7 +35,7 @@ using MovesAway = decltype(std::declval<const Bound&>().moves_away());
 }  // namespace bound_member
 
 /// Everything that restricts the next motion of a Tracker beyond the joint limits: Bounds(a, b, …) joins bounds, for
-/// example a Clearance, TaskBounds and SpeedBounds. Bounds<> restricts nothing.
+/// example a Clearance, TaskBounds and SpeedBounds. Without arguments, nothing is restricted.
 ///
 /// A tick is executed only if all bounds accept the stopping trajectory after the tick. Otherwise the arm continues the
 /// stopping trajectory of the tick before. By induction from the start, the bounds hold at every tick. The rows leave
@@ -70,7 +70,7 @@ class Bounds {
                 std::is_same_v<std::tuple<std::decay_t<First>, std::decay_t<More>...>, std::tuple<Each...>>>>
   explicit Bounds(First&& first, More&&... more) : each_(std::forward<First>(first), std::forward<More>(more)...) {}
 
-  /// The bound of a type, for example to move an obstacle: bounds.get<Clearance<7>>().move(…).
+  /// The bound of a type, for example the Clearance, whose obstacles can move.
   template <typename Bound>
   [[nodiscard]] Bound& get() noexcept {
     return std::get<Bound>(each_);

@@ -38,7 +38,7 @@ void require_stable(const ByLevels<Scheme, Stack_>& by_levels, const TickOfGains
   require_stable(by_levels.scheme, TickOfGains<Scalar>{tick.dt, Scalar(0)});
 }
 
-/// The type of the bounds among arguments: Bounds<…>, or Bounds<> if no argument has bounds.
+/// The type of the bounds among arguments, without bounds if no argument has bounds.
 template <typename... Given>
 struct BoundsAmongOf {
   using type = Bounds<>;

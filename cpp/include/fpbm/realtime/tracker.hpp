@@ -202,7 +202,7 @@ class Tracker {
     return true;
   }
 
-  /// The bounds: bounds().template get<Clearance<7>>() is the clearance, whose obstacles can move.
+  /// The bounds. Bounds::get() returns the bound of a type, for example the Clearance, whose obstacles can move.
   [[nodiscard]] Bounds_& bounds() noexcept { return state_.bounds; }
   [[nodiscard]] const Bounds_& bounds() const noexcept { return state_.bounds; }
 
