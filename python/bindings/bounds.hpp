@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "fpbm/bound/clearance.hpp"
 #include "fpbm/bound/speed_bounds.hpp"
 #include "fpbm/bound/task_bounds.hpp"
@@ -7,7 +9,32 @@
 
 namespace fpbm::bindings {
 
-/// The bounds of a motion. Bounds that are not given are empty.
-using AnyBounds = Bounds<Clearance<kDynamic>, TaskBounds<kDynamic>, SpeedBounds<kDynamic>>;
+/// The bounds of a motion: the functions of fpbm::Bounds, compiled once, in bounds.cpp. Bounds that are not given are
+/// empty.
+class AnyBounds {
+  using All = Bounds<Clearance<kDynamic>, TaskBounds<kDynamic>, SpeedBounds<kDynamic>>;
+
+ public:
+  static constexpr int kRows = All::kRows;
+
+  AnyBounds(const Clearance<kDynamic>& clearance, const TaskBounds<kDynamic>& walls,
+            const SpeedBounds<kDynamic>& speeds);
+
+  [[nodiscard]] Clearance<kDynamic>& clearance() noexcept { return all_.get<Clearance<kDynamic>>(); }
+
+  [[nodiscard]] bool empty() const noexcept { return all_.empty(); }
+  void require(const JointVector& q);
+  template <Level kLevel>
+  [[nodiscard]] Rows<kDynamic, kRows> rows(const NextMotion<kLevel, kDynamic>& next) noexcept;
+  template <Level kLevel>
+  [[nodiscard]] bool accepts(const State<kDynamic>& from, const Stop<kLevel, kDynamic>& stop) noexcept;
+  [[nodiscard]] Status status(std::uint32_t active) const noexcept { return all_.status(active); }
+  [[nodiscard]] double near_distance_sum() const noexcept { return all_.near_distance_sum(); }
+  [[nodiscard]] bool moves_away() const noexcept { return all_.moves_away(); }
+  [[nodiscard]] JointVector away(const JointVector& q) noexcept;
+
+ private:
+  All all_;
+};
 
 }  // namespace fpbm::bindings

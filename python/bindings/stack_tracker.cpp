@@ -37,7 +37,7 @@ class StackTrackerOf final : public StackTracker {
   [[nodiscard]] Point tip() const noexcept override { return tracker_.tip(); }
   [[nodiscard]] double sigma() const noexcept override { return tracker_.sigma(); }
   [[nodiscard]] Clearance<kDynamic>& clearance() noexcept override {
-    return tracker_.bounds().template get<Clearance<kDynamic>>();
+    return tracker_.bounds().clearance();
   }
 
  private:

@@ -41,7 +41,7 @@ class TrackerAt final : public AnyTracker<Space> {
   [[nodiscard]] Point tip() const noexcept override { return tracker_.tip(); }
   [[nodiscard]] double sigma() const noexcept override { return tracker_.sigma(); }
   [[nodiscard]] Clearance<kDynamic>& clearance() noexcept override {
-    return tracker_.bounds().template get<Clearance<kDynamic>>();
+    return tracker_.bounds().clearance();
   }
 
   bool begin(const Vector<Space::kRows>& error, double length) noexcept override {

@@ -38,19 +38,11 @@ void require_stable(const ByLevels<Scheme, Stack_>& by_levels, const TickOfGains
   require_stable(by_levels.scheme, TickOfGains<Scalar>{tick.dt, Scalar(0)});
 }
 
-/// The type of the bounds among arguments, without bounds if no argument has bounds.
-template <typename... Given>
-struct BoundsAmongOf {
-  using type = Bounds<>;
+/// The type of the bounds among the last arguments of Tracker's constructors: limits, qdd0 and bounds.
+template <typename = void, typename = void, typename Bounds_ = Bounds<>>
+struct LastArguments {
+  using Bounds = Bounds_;
 };
-template <typename... Each, typename... More>
-struct BoundsAmongOf<Bounds<Each...>, More...> {
-  using type = Bounds<Each...>;
-};
-template <typename First, typename... More>
-struct BoundsAmongOf<First, More...> : BoundsAmongOf<More...> {};
-template <typename... Given>
-using BoundsAmong = typename BoundsAmongOf<Given...>::type;
 
 /// Tracker of a stack of tasks. more: further arguments of Tracker's constructors: limits, qdd0 and bounds. Throws
 /// std::invalid_argument as Tracker does, and if a task does not suit the robot, a level has more rows than the robot
@@ -63,7 +55,7 @@ template <typename Robot, typename... Levels, typename Scheme, typename Start, t
   using Space = typename Tasks::Space;
   using Scalar = typename Robot::Scalar;
   require_stack_gains(scheme, stack, TickOfGains<Scalar>{options.dt, options.integral_gain});
-  return Tracker<RobotTasks<Robot, Tasks>, Space, ByLevels<Scheme, Tasks>, BoundsAmong<More...>>(
+  return Tracker<RobotTasks<Robot, Tasks>, Space, ByLevels<Scheme, Tasks>, typename LastArguments<More...>::Bounds>(
       RobotTasks<Robot, Tasks>(robot, stack), Space{}, ByLevels<Scheme, Tasks>(scheme), start, options, more...);
 }
 

@@ -1,0 +1,35 @@
+#include "bounds.hpp"
+
+namespace fpbm::bindings {
+
+AnyBounds::AnyBounds(const Clearance<kDynamic>& clearance, const TaskBounds<kDynamic>& walls,
+                     const SpeedBounds<kDynamic>& speeds)
+    : all_(clearance, walls, speeds) {}
+
+void AnyBounds::require(const JointVector& q) {
+  all_.require(q);
+}
+JointVector AnyBounds::away(const JointVector& q) noexcept {
+  return all_.away(q);
+}
+
+template <Level kLevel>
+Rows<kDynamic, AnyBounds::kRows> AnyBounds::rows(const NextMotion<kLevel, kDynamic>& next) noexcept {
+  return all_.rows(next);
+}
+template <Level kLevel>
+bool AnyBounds::accepts(const State<kDynamic>& from, const Stop<kLevel, kDynamic>& stop) noexcept {
+  return all_.accepts(from, stop);
+}
+
+template <Level kLevel>
+using NextOf = NextMotion<kLevel, kDynamic>;
+template <Level kLevel>
+using StopOf = Stop<kLevel, kDynamic>;
+using AnyRows = Rows<kDynamic, AnyBounds::kRows>;
+template AnyRows AnyBounds::rows(const NextOf<Level::kVelocity>&) noexcept;
+template AnyRows AnyBounds::rows(const NextOf<Level::kAcceleration>&) noexcept;
+template bool AnyBounds::accepts(const State<kDynamic>&, const StopOf<Level::kVelocity>&) noexcept;
+template bool AnyBounds::accepts(const State<kDynamic>&, const StopOf<Level::kAcceleration>&) noexcept;
+
+}  // namespace fpbm::bindings
