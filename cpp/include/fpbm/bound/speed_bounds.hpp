@@ -6,9 +6,7 @@
 #include <vector>
 
 #include "fpbm/bound/bounds.hpp"
-#include "fpbm/bound/detail/joint_axes.hpp"
-#include "fpbm/bound/detail/link_vector.hpp"
-#include "fpbm/model/robot.hpp"
+#include "fpbm/bound/detail/placed_robot.hpp"
 
 namespace fpbm {
 
@@ -35,20 +33,19 @@ class SpeedBounds {
 
   /// source: the Tree or the Chain of the robot.
   template <typename Source>
-  explicit SpeedBounds(const Source& source) : robot_(source), levers_(source) {}
+  explicit SpeedBounds(const Source& source) : placed_(source) {}
 
   /// Throws std::invalid_argument if the bound is not positive, the axis is zero, or the link does not exist.
   void keep(const SpeedBound<Scalar>& bound) {
     if (!(bound.velocity > Scalar(0))) validation::fail("velocity", bound.velocity, "positive, or infinite");
-    const auto x = bound.axis
-                       ? LinkVector<Joints, Scalar>::direction(robot_, bound.frame, unit_vector("axis", *bound.axis))
-                       : LinkVector<Joints, Scalar>::point(robot_, levers_, bound.frame);
+    const auto x =
+        bound.axis ? placed_.direction(bound.frame, unit_vector("axis", *bound.axis)) : placed_.point(bound.frame);
     if (std::isfinite(bound.velocity)) speeds_.push_back({x, bound.rows, bound.velocity});
   }
 
   [[nodiscard]] bool empty() const noexcept { return speeds_.empty(); }
   void require(const JointVector& q) const {
-    validation::require_size("joints of the speed bounds", robot_.dof(), q.size());
+    validation::require_size("joints of the speed bounds", placed_.robot.dof(), q.size());
   }
 
   /// Adds a row n·v ≤ velocity for each speed that the motion u would exceed. The direction of v after the whole tick
@@ -89,12 +86,10 @@ class SpeedBounds {
     const Scalar g = kLevel == Level::kAcceleration ? acting * h : acting;
     const JointVector constant = kLevel == Level::kAcceleration ? qd : JointVector((Scalar(1) - acting) * qd);
     const JointVector final = constant + g * fraction * next.u;
-    robot_.update(JointVector(next.state.q + h / Scalar(2) * (qd + final)), state_);
-    axes_.set(robot_, state_);
+    placed_.place(JointVector(next.state.q + h / Scalar(2) * (qd + final)));
     for (const Speed& speed : speeds_) {
-      const Vector<3, Scalar> x = speed.x.in_base(state_);
       const auto gradient = [&](const Vector<3, Scalar>& n) noexcept {
-        return robot_.drives().by_drive(axes_.gradient(n, x, speed.x.moved_by, speed.x.is_direction));
+        return placed_.robot.drives().by_drive(placed_.gradient(n, speed.x));
       };
       Vector<3, Scalar> v = Vector<3, Scalar>::Zero();
       for (int axis = 0; axis < 3; ++axis) {
@@ -109,11 +104,8 @@ class SpeedBounds {
     }
   }
 
-  Robot<N, Scalar, Joints> robot_;
-  Levers<Scalar> levers_;
+  PlacedRobot<N, Scalar, Joints> placed_;
   std::vector<Speed> speeds_;
-  typename Robot<N, Scalar, Joints>::State state_;  ///< Memory of rows().
-  JointAxes<Joints, Scalar> axes_;
 };
 
 }  // namespace fpbm

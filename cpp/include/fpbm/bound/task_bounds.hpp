@@ -40,7 +40,7 @@ struct PositionBounds {
   /// Throws std::invalid_argument if a bound is out of range, or the link does not exist.
   template <int N, int Joints>
   void add_to(CoordinateBounds<N, Scalar, Joints>& bounds) const {
-    const auto point = bounds.point(frame);
+    const auto point = bounds.placed().point(frame);
     for (int i = 0; i < 3; ++i) {
       if (!(lower(i) < upper(i))) validation::fail(validation::element("lower", i), lower(i), "below upper");
       const std::string axis(1, "xyz"[i]);
@@ -71,7 +71,7 @@ struct AxisBounds {
   /// Throws std::invalid_argument if a bound is out of range, or the link does not exist.
   template <int N, int Joints>
   void add_to(CoordinateBounds<N, Scalar, Joints>& bounds) const {
-    const auto a = bounds.direction(frame, unit_vector("axis", axis));
+    const auto a = bounds.placed().direction(frame, unit_vector("axis", axis));
     const Vector<3, Scalar> d = unit_vector("direction", direction);
     validation::require_non_negative("lower", lower);
     if (!(lower < upper)) validation::fail("lower", lower, "below upper");

@@ -94,11 +94,6 @@ class Advancement {
   }
 
  private:
-  // Largest number of steps. In random motions among 26 near pairs, 16 steps accept 48,019 stopping trajectories, and
-  // 8 steps accept 48,002 of these trajectories. With 8 steps, the longest tick of a clearance executes 25 % fewer
-  // instructions (bench/README.md, "The longest ticks"). With 2 steps, rejected ticks increase the jerk in
-  // Bounds.slides_along_a_wall by a factor of 960.
-  static constexpr int kAdvances = 8;
   /// A pair that is proved for this fraction of the remaining trajectory is not checked in the next step
   /// (bench/README.md, "The longest ticks").
   static constexpr Scalar kProven = Scalar(0.75);

@@ -8,10 +8,8 @@
 
 #include "fpbm/bound/bounds.hpp"
 #include "fpbm/bound/detail/gap_rows.hpp"
-#include "fpbm/bound/detail/joint_axes.hpp"
 #include "fpbm/bound/detail/kept_fraction.hpp"
-#include "fpbm/bound/detail/link_vector.hpp"
-#include "fpbm/model/robot.hpp"
+#include "fpbm/bound/detail/placed_robot.hpp"
 
 namespace fpbm {
 
@@ -38,7 +36,7 @@ class CoordinateBounds {
 
   /// source: the Tree or the Chain of the robot.
   template <typename Source>
-  explicit CoordinateBounds(const Source& source) : robot_(source), levers_(source) {}
+  explicit CoordinateBounds(const Source& source) : placed_(source) {}
 
   /// Throws std::invalid_argument unless the deceleration is positive.
   void add(Coordinate coordinate) {
@@ -48,22 +46,14 @@ class CoordinateBounds {
     coordinates_.push_back(std::move(coordinate));
     open_.resize(coordinates_.size());
   }
-  /// The origin of a frame. Throws std::invalid_argument if the link does not exist.
-  [[nodiscard]] LinkVector<Joints, Scalar> point(const LinkFrame<Scalar>& frame) const {
-    return LinkVector<Joints, Scalar>::point(robot_, levers_, frame);
-  }
-  /// An axis of a frame, a unit vector in the frame. Throws std::invalid_argument if the link does not exist.
-  [[nodiscard]] LinkVector<Joints, Scalar> direction(const LinkFrame<Scalar>& frame, const Vector3& axis) const {
-    return LinkVector<Joints, Scalar>::direction(robot_, frame, axis);
-  }
-
+  [[nodiscard]] const PlacedRobot<N, Scalar, Joints>& placed() const noexcept { return placed_; }
   [[nodiscard]] const std::vector<Coordinate>& coordinates() const noexcept { return coordinates_; }
   [[nodiscard]] bool empty() const noexcept { return coordinates_.empty(); }
 
   /// Throws std::invalid_argument with the name of the bound if the posture q is beyond a bound.
   void require(const JointVector& q) {
-    validation::require_size("joints of the task bounds", robot_.dof(), q.size());
-    place(q);
+    validation::require_size("joints of the task bounds", placed_.robot.dof(), q.size());
+    placed_.place(q);
     const auto least = std::min_element(coordinates_.begin(), coordinates_.end(),
                                         [&](const auto& a, const auto& b) { return gap_of(a) < gap_of(b); });
     if (least != coordinates_.end() && !(gap_of(*least) >= Scalar(0))) {
@@ -73,11 +63,11 @@ class CoordinateBounds {
 
   template <Level kLevel, int P>
   void rows(const NextMotion<kLevel, N, Scalar>& next, Rows<N, P, Scalar>& rows) noexcept {
-    const auto& drives = robot_.drives();
+    const auto& drives = placed_.robot.drives();
     const Motion motion(drives, next);
     const AllJoints fastest = drives.rates(Gaps::fastest(next, motion)).cwiseAbs() + motion.stop.deviation;
     const JointVector middle = motion.middle(next.state);
-    place(middle);
+    placed_.place(middle);
     gaps_.begin(rows.count);
     const Eigen::Index before = rows.count;
     for (const Coordinate& each : coordinates_) {
@@ -85,23 +75,23 @@ class CoordinateBounds {
       const auto bound = displacement_of(each, motion.stop);
       const Scalar range = bound.c0 + bound.c1 + bound.c2 + each.x.levers.dot(fastest);
       if (!std::isfinite(each.deceleration) && gap >= range) continue;
-      const AllJoints gradient = gradient_of(each);
+      const AllJoints gradient = placed_.gradient(each.n, each.x);
       gaps_.add({gap, Gaps::slack_of(gap, gradient, bound, motion), gap + gradient.dot(motion.stop.line), Scalar(0),
                  each.deceleration},
                 drives.by_drive(gradient), &each, motion, rows);
     }
     if (rows.count == before) return;
-    place(JointVector(middle + motion.line));
+    placed_.place(JointVector(middle + motion.line));
     gaps_.finish(next, motion, rows, [&](const Coordinate* each) noexcept { return gap_of(*each); });
   }
 
   /// By conservative advancement, as in Advancement.
   template <Level kLevel>
   [[nodiscard]] bool accepts(const State<N, Scalar>& from, const Stop<kLevel, N, Scalar>& stop) noexcept {
-    const StoppingMotion<Joints, Scalar> motion(robot_.drives(), stop.displacement, stop.time);
+    const StoppingMotion<Joints, Scalar> motion(placed_.robot.drives(), stop.displacement, stop.time);
     if (!motion.displacement.line.allFinite() || !motion.displacement.deviation.allFinite()) return false;
     Scalar done(0);
-    place(from.q);
+    placed_.place(from.q);
     for (std::size_t i = 0; i < open_.size(); ++i) {
       open_[i] = {Scalar(0), displacement_of(coordinates_[i], motion.displacement)};
     }
@@ -118,14 +108,12 @@ class CoordinateBounds {
       if (until == Scalar(1)) return true;
       if (!(until > done)) return false;
       done = until;
-      place(JointVector(from.q + done * stop.displacement.line));
+      placed_.place(JointVector(from.q + done * stop.displacement.line));
     }
     return false;
   }
 
  private:
-  /// As in Advancement.
-  static constexpr int kAdvances = 8;
   using AllJoints = Vector<Joints, Scalar>;
   using Motion = GapMotion<N, Joints, Scalar>;
   using Gaps = GapRows<kRows, N, Joints, Scalar, const Coordinate*>;
@@ -136,20 +124,13 @@ class CoordinateBounds {
     DisplacementBound<Scalar> bound;
   };
 
-  void place(const JointVector& q) noexcept {
-    robot_.update(q, state_);
-    axes_.set(robot_, state_);
-  }
   [[nodiscard]] Scalar gap_of(const Coordinate& each) const noexcept {
-    return each.n.dot(each.x.in_base(state_)) - each.offset;
-  }
-  [[nodiscard]] AllJoints gradient_of(const Coordinate& each) const noexcept {
-    return axes_.gradient(each.n, each.x.in_base(state_), each.x.moved_by, each.x.is_direction);
+    return each.n.dot(placed_.in_base(each.x)) - each.offset;
   }
   [[nodiscard]] DisplacementBound<Scalar> displacement_of(
       const Coordinate& each, const JointDisplacement<Joints, Scalar>& displacement) const noexcept {
     DisplacementBound<Scalar> bound;
-    bound.add(robot_, each.x.levers, each.x.moved_by, displacement);
+    bound.add(placed_.robot, each.x.levers, each.x.moved_by, displacement);
     return bound;
   }
 
@@ -159,7 +140,7 @@ class CoordinateBounds {
                                        const StoppingMotion<Joints, Scalar>& motion, Scalar remaining) const noexcept {
     const Scalar gap = gap_of(each);
     if (gap >= bound.displacement(remaining)) return remaining;
-    const AllJoints gradient = gradient_of(each);
+    const AllJoints gradient = placed_.gradient(each.n, each.x);
     if (gap < -kIntrusion<Scalar> && remaining == Scalar(1)) {
       const auto& p = motion.displacement;
       return gradient.dot(p.line) + p.least(gradient) >= Scalar(0) ? remaining : Scalar(0);
@@ -167,11 +148,8 @@ class CoordinateBounds {
     return kept_fraction(gap, gradient, bound, motion, remaining);
   }
 
-  Robot<N, Scalar, Joints> robot_;
-  Levers<Scalar> levers_;
+  PlacedRobot<N, Scalar, Joints> placed_;
   std::vector<Coordinate> coordinates_;
-  typename Robot<N, Scalar, Joints>::State state_;  ///< In the posture of place().
-  JointAxes<Joints, Scalar> axes_;
   Gaps gaps_;
   std::vector<Open> open_;  ///< Memory of accepts().
 };

@@ -15,6 +15,12 @@ namespace fpbm {
 template <typename Scalar>
 inline constexpr Scalar kIntrusion = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-9) : Scalar(1e-5);
 
+/// Largest number of steps of a conservative advancement. In random motions among 26 near pairs, 16 steps accept 48,019
+/// stopping trajectories, and 8 steps accept 48,002 of these trajectories. With 8 steps, the longest tick of a
+/// clearance executes 25 % fewer instructions (bench/README.md, "The longest ticks"). With 2 steps, rejected ticks
+/// increase the jerk in Bounds.slides_along_a_wall by a factor of 960.
+inline constexpr int kAdvances = 8;
+
 /// A stopping trajectory of all joints.
 template <int Joints, typename Scalar>
 struct StoppingMotion {
