@@ -36,9 +36,7 @@ class StackTrackerOf final : public StackTracker {
   [[nodiscard]] const JointVector& acceleration() const noexcept override { return tracker_.acceleration(); }
   [[nodiscard]] Point tip() const noexcept override { return tracker_.tip(); }
   [[nodiscard]] double sigma() const noexcept override { return tracker_.sigma(); }
-  [[nodiscard]] Clearance<kDynamic>& clearance() noexcept override {
-    return tracker_.bounds().clearance();
-  }
+  [[nodiscard]] Clearance<kDynamic>& clearance() noexcept override { return tracker_.bounds().clearance(); }
 
  private:
   Tracker<RobotTasks<Robot<kDynamic>, AnyStack>, Space, ByLevels<Scheme_, AnyStack>, AnyBounds> tracker_;
