@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "fpbm/linalg/detail/paired.hpp"
+#include "fpbm/linalg/detail/column_sums.hpp"
 
 namespace fpbm {
 
@@ -173,7 +173,7 @@ class HeldJoints {
     for (int i = 0; i < k; ++i) R_[i][k] = Scalar(0);
     for (int round = 0; round < 2; ++round) {
       for (int i = 0; i < k; ++i) {
-        const Scalar along = paired_dot(Q_[i].data(), Q_[k].data(), Z.cols());
+        const Scalar along = column_dot(Q_[i].data(), Q_[k].data(), Z.cols());
         R_[i][k] += along;
         subtract_multiple(Q_[k].data(), along, Q_[i].data(), Z.cols());
       }

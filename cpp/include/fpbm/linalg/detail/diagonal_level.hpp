@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "fpbm/core/types.hpp"
+#include "fpbm/linalg/detail/column_sums.hpp"
 #include "fpbm/linalg/detail/entrywise.hpp"
-#include "fpbm/linalg/detail/paired.hpp"
 
 namespace fpbm {
 
@@ -63,12 +63,12 @@ template <int N, typename Scalar, typename Basis>
     for (Eigen::Index i = 0; i < n; ++i) column[i] *= D.coeff(i);
     for (Eigen::Index k = 0; k < j; ++k) {
       const Scalar* const other = DZ.data() + k * n;
-      const Scalar coefficient = paired_dot(other, column, n) / squares.coeff(k);
+      const Scalar coefficient = column_dot(other, column, n) / squares.coeff(k);
       subtract_multiple(column, coefficient, other, n);
       subtract_multiple(z, coefficient, Z.data() + k * n, n);
     }
     squares.coeffRef(j) = squared_length(column, n);
-    const Scalar coefficient = paired_dot<Scalar>(column, r.data(), n) / squares.coeff(j);
+    const Scalar coefficient = column_dot<Scalar>(column, r.data(), n) / squares.coeff(j);
     subtract_multiple<Scalar>(r.data(), coefficient, column, n);
     subtract_multiple<Scalar>(y.data(), -coefficient, z, n);
   }

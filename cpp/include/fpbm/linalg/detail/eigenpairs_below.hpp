@@ -6,7 +6,7 @@
 
 #include "fpbm/core/detail/unrolled.hpp"
 #include "fpbm/core/types.hpp"
-#include "fpbm/linalg/detail/paired.hpp"
+#include "fpbm/linalg/detail/column_sums.hpp"
 #include "fpbm/linalg/detail/product.hpp"
 #include "fpbm/linalg/detail/tridiagonal.hpp"
 
@@ -70,7 +70,7 @@ class EigenpairsBelow {
     Column v = fpbm::column(tridiagonal_.vectors, k);
     for (Eigen::Index i = m - 2; i-- > 0;) {
       const Scalar* const reflection = T_.data() + i * m;
-      subtract_multiple(v.data(), factors_(i) * paired_dot(reflection, v.data(), m), reflection, m);
+      subtract_multiple(v.data(), factors_(i) * column_dot(reflection, v.data(), m), reflection, m);
     }
     return v;
   }
@@ -98,7 +98,7 @@ class EigenpairsBelow {
       v[k + 1] -= tridiagonal_.beside(k);
       Column w = filled<Column>(m);
       for (Eigen::Index j = k + 1; j < m; ++j) subtract_multiple(w.data(), -factors_(k) * v[j], column(j), m);
-      subtract_multiple(w.data(), factors_(k) / Scalar(2) * paired_dot(v, w.data(), m), v, m);
+      subtract_multiple(w.data(), factors_(k) / Scalar(2) * column_dot(v, w.data(), m), v, m);
       for (Eigen::Index j = k + 1; j < m; ++j) {
         subtract_multiple(column(j), w(j), v, m);
         subtract_multiple(column(j), v[j], w.data(), m);

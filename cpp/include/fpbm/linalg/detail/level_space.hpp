@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "fpbm/core/types.hpp"
+#include "fpbm/linalg/detail/column_sums.hpp"
 #include "fpbm/linalg/detail/diagonal_level.hpp"
 #include "fpbm/linalg/detail/entrywise.hpp"
-#include "fpbm/linalg/detail/paired.hpp"
 #include "fpbm/linalg/detail/product.hpp"
 #include "fpbm/linalg/detail/reflections.hpp"
 #include "fpbm/linalg/detail/remainders.hpp"

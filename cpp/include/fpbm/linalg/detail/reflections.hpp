@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "fpbm/core/types.hpp"
-#include "fpbm/linalg/detail/paired.hpp"
+#include "fpbm/linalg/detail/column_sums.hpp"
 
 namespace fpbm {
 
@@ -54,7 +54,7 @@ class Reflections {
     // With fixed N, loops over all entries: the zeros above row k cost less than a loop of run-time length.
     const Eigen::Index begin = N == Eigen::Dynamic ? k : 0;
     const Eigen::Index end = N == Eigen::Dynamic ? size() : N;
-    const Scalar along = beta_.coeff(k) * paired_dot(v + begin, x + begin, end - begin);
+    const Scalar along = beta_.coeff(k) * column_dot(v + begin, x + begin, end - begin);
     subtract_multiple(x + begin, along, v + begin, end - begin);
   }
 

@@ -6,9 +6,9 @@
 #include "fpbm/core/detail/unrolled.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/types.hpp"
+#include "fpbm/linalg/detail/column_sums.hpp"
 #include "fpbm/linalg/detail/inverse_trace.hpp"
 #include "fpbm/linalg/detail/pair.hpp"
-#include "fpbm/linalg/detail/paired.hpp"
 #include "fpbm/linalg/detail/total.hpp"
 
 namespace fpbm {
@@ -128,7 +128,7 @@ class RowFactor {
   [[nodiscard, gnu::always_inline]] static Value dot([[maybe_unused]] Count n, const Value* a,
                                                      const Value* b) noexcept {
     if constexpr (kLong) {
-      return paired_dot(a, b, N);
+      return column_dot(a, b, N);
     } else if constexpr (std::is_same_v<Count, Constant<N>>) {
       return total<0, N>([&](Eigen::Index k) { return a[k] * b[k]; });
     } else {

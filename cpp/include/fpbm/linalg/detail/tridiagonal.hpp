@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "fpbm/core/types.hpp"
-#include "fpbm/linalg/detail/paired.hpp"
+#include "fpbm/linalg/detail/column_sums.hpp"
 
 namespace fpbm {
 

@@ -51,13 +51,13 @@ void report_levels(const Kinematics<StackSpace<Levels...>, N, Scalar>& kinematic
   StackSpace<Levels...>::each([&](auto space, auto i, int row) noexcept {
     using Part = decltype(space);
     constexpr std::size_t kTask = decltype(i)::value;
-    constexpr int kLevel = Stack<Levels...>::level(static_cast<int>(kTask));
+    constexpr int kIndex = Stack<Levels...>::level(static_cast<int>(kTask));
     for (int j = row; j < row + Part::kRows; ++j) {
-      if (!std::isfinite(tick.error(j))) tick.scales[kLevel] = Scalar(0);
+      if (!std::isfinite(tick.error(j))) tick.scales[kIndex] = Scalar(0);
     }
     if constexpr (kHasSlowedFraction<Part>) {
-      if (!kinematics.enabled[kLevel]) return;
-      tick.scales[kLevel] *= Part::template slowed_fraction<Scalar>(std::get<kTask>(x), std::get<kTask>(kinematics.tip),
+      if (!kinematics.enabled[kIndex]) return;
+      tick.scales[kIndex] *= Part::template slowed_fraction<Scalar>(std::get<kTask>(x), std::get<kTask>(kinematics.tip),
                                                                     std::get<kTask>(kinematics.tasks).S);
     }
   });
@@ -88,8 +88,8 @@ template <typename... Levels, int N, typename Scalar>
       kinematics.levels);
   if (kinematics.tick > Scalar(0) && !has_lower_levels(kinematics)) {
     kinematics.each_task([&](auto level, const auto& task, Eigen::Index row) noexcept {
-      constexpr std::size_t kLevel = decltype(level)::value;
-      levels.template add_lead<kLevel>(row, task.S.rows(), -task.feedback.lead, std::get<kLevel>(kinematics.levels));
+      constexpr std::size_t kIndex = decltype(level)::value;
+      levels.template add_lead<kIndex>(row, task.S.rows(), -task.feedback.lead, std::get<kIndex>(kinematics.levels));
     });
   }
   return levels;

@@ -4,10 +4,10 @@
 #include <cstddef>
 
 #include "fpbm/core/types.hpp"
+#include "fpbm/linalg/detail/column_sums.hpp"
 #include "fpbm/linalg/detail/diagonal_level.hpp"
 #include "fpbm/linalg/detail/entrywise.hpp"
 #include "fpbm/linalg/detail/pair.hpp"
-#include "fpbm/linalg/detail/paired.hpp"
 #include "fpbm/task/detail/tick_feedback.hpp"
 
 namespace fpbm {

@@ -9,7 +9,7 @@ namespace fpbm {
 
 /// Σ a_i b_i over n entries.
 template <typename Scalar>
-[[nodiscard, gnu::always_inline]] inline Scalar paired_dot(const Scalar* a, const Scalar* b, Eigen::Index n) noexcept {
+[[nodiscard, gnu::always_inline]] inline Scalar column_dot(const Scalar* a, const Scalar* b, Eigen::Index n) noexcept {
   Eigen::Index i = 0;
   Scalar sum(0);
   if constexpr (kRowsInPairs<Scalar>) {
@@ -37,7 +37,7 @@ template <typename Scalar>
 /// Σ a_i² over n entries.
 template <typename Scalar>
 [[nodiscard, gnu::always_inline]] inline Scalar squared_length(const Scalar* a, Eigen::Index n) noexcept {
-  return paired_dot(a, a, n);
+  return column_dot(a, a, n);
 }
 
 /// a −= s b over n entries.
