@@ -22,6 +22,7 @@ LAYERS = [
     ("scheme",),
     ("limits",),
     ("bound",),
+    ("inverse",),
     ("simulate",),
     ("realtime",),
     ("any",),

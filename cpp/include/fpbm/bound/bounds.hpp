@@ -28,6 +28,9 @@ using WriteRows = decltype(std::declval<Bound&>().rows(std::declval<const Next&>
 template <typename Bound, typename From, typename Stop_>
 using Accepts = decltype(bool{
     std::declval<Bound&>().accepts(std::declval<const From&>(), std::declval<const Stop_&>())});
+template <typename Bound, typename JointVector, typename F>
+using Gaps = decltype(std::declval<Bound&>().gaps(std::declval<const JointVector&>(), typename JointVector::Scalar(),
+                                                  std::declval<const F&>()));
 /// Member of a bound that knows shapes, as a Clearance. The bound also has near_distance_sum() and away(q).
 template <typename Bound>
 using MovesAway = decltype(std::declval<const Bound&>().moves_away());
@@ -128,6 +131,18 @@ class Bounds {
         "a bound needs `bool accepts(const State<N, Scalar>& from, const Stop<kLevel, N, Scalar>& stop) noexcept`");
     return std::apply([&](auto&... bound) noexcept { return ((bound.empty() || bound.accepts(from, stop)) && ...); },
                       each_);
+  }
+
+  /// Calls f(gap, gradient) for each gap below the range in the posture q. The posture keeps all bounds if no gap is
+  /// negative. gradient: of the gap with respect to the drives.
+  template <typename JointVector, typename F>
+  void gaps(const JointVector& q, typename JointVector::Scalar range, const F& f) noexcept {
+    static_assert((kHas<Each, bound_member::Gaps, JointVector, F> && ...),
+                  "a bound on the postures of InverseKinematics needs "
+                  "`template <typename F> void gaps(const JointVector& q, Scalar range, const F& f) noexcept`");
+    each([&](auto& bound) noexcept {
+      if (!bound.empty()) bound.gaps(q, range, f);
+    });
   }
 
   /// Sum of the distances to shapes that are near [m], of bounds that know shapes. While the arm is at rest, the sum

@@ -68,6 +68,22 @@ class Clearance : public Shapes<N, Scalar_, Joints> {
     return this->moves() && advancement_.keeps_margins(*this, near_, stop.displacement, stop.time, Pairs::kStatic);
   }
 
+  /// Calls f(gap, gradient) for each pair whose gap, the distance minus the margin, is below the range in the posture q
+  /// [m]. gradient: of the gap with respect to the drives.
+  template <typename F>
+  void gaps(const JointVector& q, Scalar range, const F& f) noexcept {
+    near_.set_posture(*this, q);
+    const auto& placed = near_.here();
+    for (const ShapePair& pair : this->pairs()) {
+      if (this->distance_lower_bound(placed, pair) >= this->margin() + range) continue;
+      const Nearest<Scalar> found = this->nearest_of(placed, pair);
+      const Scalar gap = found.distance - this->margin();
+      if (gap < range) {
+        f(gap, this->robot().drives().by_drive(Separation<Base>(*this, placed, pair, found).of_distance()));
+      }
+    }
+  }
+
   /// Sum of the distances of the pairs that rows() found near [m]. While the arm is at rest, the sum changes only if
   /// obstacles move.
   [[nodiscard]] Scalar near_distance_sum() const noexcept { return rows_.distance_sum(); }

@@ -58,6 +58,10 @@ class SpeedBounds {
     if (next.least_fraction < Scalar(1)) add_rows(next, next.least_fraction, most, rows);
   }
 
+  /// No posture is beyond a bound on speed.
+  template <typename F>
+  void gaps(const JointVector&, Scalar, const F&) const noexcept {}
+
   template <Level kLevel>
   [[nodiscard]] static bool accepts(const State<N, Scalar>&, const Stop<kLevel, N, Scalar>&) noexcept {
     return true;

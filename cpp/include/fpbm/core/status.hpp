@@ -12,6 +12,7 @@ enum class Status : unsigned char {
   kBlocked,     ///< Clearances, or bounds of tasks, reduce the task scale.
   kRecovering,  ///< No progress toward the target: the arm moves to a posture from which it can reach the target.
   kStalled,     ///< No progress toward the target: the arm rests until the target or a near shape moves, or resume().
+  kNotFound,    ///< A search found no posture at its target: its result is the nearest posture found.
   kSingular,    ///< The task Jacobian is rank-deficient up to round-off.
   kTaskLost,    ///< Within one step, the tip has left the motion that the scheme prescribes.
   kNotFinite,   ///< The state, the reference or the result is infinite or NaN.
@@ -39,6 +40,7 @@ enum class Status : unsigned char {
       return "the arm made no progress toward its target: it moves to a posture from which the target is reachable";
     case Status::kStalled:
       return "the arm makes no progress toward its target, which may be unreachable: the arm stops";
+    case Status::kNotFound: return "no posture at the target was found: the target may be unreachable";
     case Status::kSingular: return "the posture is singular: the task Jacobian is rank-deficient";
     case Status::kTaskLost: return "the tip has left its reference: the target is unreachable, or the step is too long";
     case Status::kNotFinite: return "a number is not finite: the joint motion has diverged";
@@ -59,6 +61,7 @@ enum class Status : unsigned char {
       return "Lead the target around the nearest shape, or expect a tip error while shapes or bounds limit the task.";
     case Status::kRecovering: return "Expect a tip error until the arm is in that posture.";
     case Status::kStalled: return "Move the target into the workspace, or call resume() to try again.";
+    case Status::kNotFound: return "Move the target into the workspace, relax the bounds, or allow more starts.";
     case Status::kSingular:
       return "Choose another start posture, a path inside the workspace, or weights with smaller ratios.";
     case Status::kTaskLost: return "Keep the path inside the workspace and away from singular postures, or shorten dt.";

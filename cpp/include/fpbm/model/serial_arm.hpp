@@ -14,9 +14,9 @@
 #include "fpbm/model/chain.hpp"
 #include "fpbm/model/detail/continuous_joints.hpp"
 #include "fpbm/model/detail/forward_pass.hpp"
+#include "fpbm/model/detail/frame.hpp"
 #include "fpbm/model/detail/link.hpp"
 #include "fpbm/model/detail/screws.hpp"
-#include "fpbm/model/frame.hpp"
 #include "fpbm/model/kinematics.hpp"
 
 namespace fpbm {

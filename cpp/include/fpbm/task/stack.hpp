@@ -21,6 +21,12 @@ template <typename Task>
   }
 }
 
+/// Whether a task has positions of joints: whether it names the joint of each row.
+template <typename Task, typename = void>
+inline constexpr bool kIsPosture = false;
+template <typename Task>
+inline constexpr bool kIsPosture<Task, std::void_t<decltype(std::declval<const Task&>().joint(0))>> = true;
+
 /// Tasks on one level, with equal priority.
 template <typename... Tasks>
 struct TaskLevel {

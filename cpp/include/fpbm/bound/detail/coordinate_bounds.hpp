@@ -85,6 +85,17 @@ class CoordinateBounds {
     gaps_.finish(next, motion, rows, [&](const Coordinate* each) noexcept { return gap_of(*each); });
   }
 
+  /// Calls f(gap, gradient) for each bound whose gap n·x − offset is below the range in the posture q [m, or 1 for a
+  /// direction]. gradient: of the gap with respect to the drives.
+  template <typename F>
+  void gaps(const JointVector& q, Scalar range, const F& f) noexcept {
+    placed_.place(q);
+    for (const Coordinate& each : coordinates_) {
+      const Scalar gap = gap_of(each);
+      if (gap < range) f(gap, placed_.robot.drives().by_drive(placed_.gradient(each.n, each.x)));
+    }
+  }
+
   /// By conservative advancement, as in Advancement.
   template <Level kLevel>
   [[nodiscard]] bool accepts(const State<N, Scalar>& from, const Stop<kLevel, N, Scalar>& stop) noexcept {

@@ -38,6 +38,23 @@ using Number = typename NumberOf<Scalar>::type;
   return !truth;
 }
 
+[[nodiscard]] inline bool any_of(bool truth) noexcept {
+  return truth;
+}
+
+/// yes where the mask is true, else no.
+template <typename Scalar>
+[[nodiscard, gnu::always_inline]] inline Scalar select(const Mask<Scalar>& mask, const Scalar& yes,
+                                                       const Scalar& no) noexcept {
+  if constexpr (kInLanes<Scalar>) {
+    Scalar result = no;
+    where(mask, result) = yes;
+    return result;
+  } else {
+    return mask ? yes : no;
+  }
+}
+
 /// Sets the lanes of value whose mask is false to NaN. Has no effect on a single number: a Status reports the failure.
 template <typename Masks, typename Scalar>
 void set_nan_unless([[maybe_unused]] const Masks& truth, [[maybe_unused]] Scalar& value) noexcept {

@@ -7,9 +7,9 @@
 #include "fpbm/geometry/detail/sincos.hpp"
 #include "fpbm/geometry/rotation.hpp"
 #include "fpbm/linalg/detail/pair.hpp"
+#include "fpbm/model/detail/frame.hpp"
 #include "fpbm/model/detail/link.hpp"
 #include "fpbm/model/detail/screws.hpp"
-#include "fpbm/model/frame.hpp"
 #include "fpbm/model/joint.hpp"
 
 namespace fpbm {

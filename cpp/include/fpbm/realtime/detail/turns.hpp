@@ -9,12 +9,6 @@
 
 namespace fpbm {
 
-/// Whether a task has positions of joints: whether it names the joint of each row.
-template <typename Task, typename = void>
-inline constexpr bool kIsPosture = false;
-template <typename Task>
-inline constexpr bool kIsPosture<Task, std::void_t<decltype(std::declval<const Task&>().joint(0))>> = true;
-
 /// Whether an arm is a robot with a stack of tasks.
 template <typename Arm, typename = void>
 inline constexpr bool kHasStack = false;

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <algorithm>
+
+#include "fpbm/core/detail/mask.hpp"
+
+namespace fpbm {
+
+/// Attempts of a search from several postures, one for each lane of the Scalar.
+///
+/// A step that makes the posture better is taken, and λ decreases. Otherwise, the
+/// posture does not change, and λ increases. Search: TipSearch or
+/// StackSearch.
+template <typename Search>
+class Attempts {
+ public:
+  using Scalar = typename Search::Scalar;
+  using Trial = typename Search::Trial;
+  using JointVector = typename Search::JointVector;
+
+  explicit Attempts(const Search& search) noexcept : search_(search) {}
+
+  [[nodiscard]] const Trial& now() const noexcept { return now_; }
+
+  /// Starts new attempts from q in the lanes of the mask. patience: number of steps that may be slow.
+  void start(const Mask<Scalar>& lanes, const JointVector& q, const Scalar& patience) noexcept {
+    Trial trial;
+    trial.q = q;
+    search_.evaluate(trial);
+    search_.take(lanes, trial, now_);
+    lambda_ = select(lanes, Scalar(kFirstDamping), lambda_);
+    steps_ = select(lanes, Scalar(0), steps_);
+    patience_ = select(lanes, patience, patience_);
+  }
+
+  /// One step. Returns the lanes that give up.
+  [[nodiscard]] Mask<Scalar> step() noexcept {
+    using std::max;
+    Trial trial;
+    trial.q = search_.step(now_, lambda_);
+    search_.evaluate(trial);
+    const Mask<Scalar> better = search_.better(trial, now_);
+    const Mask<Scalar> slow = trial.cost > Scalar(kSlow) * now_.cost;
+    search_.take(better, trial, now_);
+    lambda_ = select(better, max(Scalar(lambda_ * Scalar(kLess)), Scalar(kLeastDamping)), lambda_ * Scalar(kMore));
+    steps_ += Scalar(1);
+    const Mask<Scalar> far = now_.cost > Scalar(kNear) * search_.length() * search_.length();
+    return (steps_ > patience_ && slow && far) || steps_ > Scalar(kMostSteps) * patience_;
+  }
+
+  /// Moves toward the other tasks while the targets that must be reached stay reached: each step is followed by
+  /// corrections without the other tasks.
+  void settle() noexcept {
+    if constexpr (Search::kHasRest) {
+      lambda_ = Scalar(kFirstDamping);
+      int slow = 0;
+      for (int i = 0; i < kSettling && slow < kSlowSteps && lambda_ < Scalar(kMostDamping); ++i) {
+        Trial trial;
+        trial.q = search_.step(now_, lambda_);
+        search_.evaluate(trial);
+        // One correction more than necessary: near a singular posture, an error within the tolerance moves the other
+        // tasks by more than the step.
+        bool reached = false;
+        for (int k = 0; k < kCorrections && !reached; ++k) {
+          reached = search_.reached(trial);
+          trial.q = search_.correction(trial);
+          search_.evaluate(trial);
+        }
+        const bool better = search_.reached(trial) && trial.rest < now_.rest;
+        // A joint that reaches an end of its range makes one step slow.
+        if (better) slow = trial.rest > Scalar(kSettled) * now_.rest ? slow + 1 : 0;
+        search_.take(better, trial, now_);
+        lambda_ *= Scalar(better ? kLess : kMore);
+      }
+    }
+  }
+
+ private:
+  // make inverse prints the number of solved poses and the time for each value.
+  static constexpr double kFirstDamping = 0.1;
+  static constexpr double kLeastDamping = 1e-5;
+  static constexpr double kLess = 0.4;
+  static constexpr double kMore = 12.0;
+  static constexpr double kSlow = 0.7;
+  static constexpr double kNear = 1e-5;
+  static constexpr double kMostSteps = 16.0;
+  static constexpr int kSettling = 40;
+  static constexpr int kCorrections = 4;
+  static constexpr int kSlowSteps = 3;
+  static constexpr double kSettled = 0.9999;
+  static constexpr double kMostDamping = 1e3;
+
+  const Search& search_;
+  Trial now_;
+  Scalar lambda_{0};
+  Scalar steps_{0};
+  Scalar patience_{0};
+};
+
+}  // namespace fpbm

@@ -1,0 +1,346 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+#include "fpbm/core/detail/lane_access.hpp"
+#include "fpbm/core/detail/validation.hpp"
+#include "fpbm/core/status.hpp"
+#include "fpbm/inverse/detail/attempts.hpp"
+#include "fpbm/inverse/detail/joint_ranges.hpp"
+#include "fpbm/inverse/detail/stack_search.hpp"
+#include "fpbm/inverse/detail/tip_search.hpp"
+
+namespace fpbm {
+
+template <typename Scalar = double>
+struct InverseOptions {
+  /// Largest distance [m] and angle [rad] of a solution from its target.
+  Scalar tolerance = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-6) : Scalar(1e-4);
+  int starts = 64;         ///< Largest number of start postures, the given start included.
+  std::uint32_t seed = 0;  ///< Selects the start postures after the given start. The same seed gives the same result.
+};
+
+/// Result of InverseKinematics::solve().
+template <int N, typename Scalar = double>
+struct Posture {
+  Vector<N, Scalar> q;  ///< The posture, or the nearest posture found [rad] or [m].
+  Status status;        ///< kOk, kNotFound, or kNotFinite if the target or the start is not finite.
+  Scalar error;         ///< Largest distance [m] or angle [rad] from the target.
+  int starts;           ///< Number of start postures used.
+
+  [[nodiscard]] bool solved() const noexcept { return status == Status::kOk; }
+};
+
+/// Postures for targets: inverse kinematics within the ranges of the joints (docs/inverse.md).
+///
+/// From the given start, and then from start postures that fill the ranges evenly, a search makes steps of Levenberg
+/// and Marquardt, until the target is reached. Most attempts that would not reach the target are given up after few
+/// steps. The result depends on the arguments only. Memory and time are bounded; there is no heap allocation.
+///
+///   InverseKinematics inverse(arm, Pose{});                 // the tip of an arm
+///   InverseKinematics inverse(robot, stack, {}, limits, bounds);  // a stack of tasks, within bounds
+///
+/// Batch: Lanes<K> of fpbm/core/lanes.hpp for attempts from K start postures in parallel, for the tip of an arm.
+/// The arm with another Scalar, or the arm itself for an equal Scalar.
+template <typename Other, typename Arm>
+[[nodiscard]] auto arm_in(const Arm& arm) {
+  if constexpr (std::is_same_v<Other, typename Arm::Scalar>) {
+    return arm;
+  } else {
+    return arm.template cast<Other>();
+  }
+}
+
+template <typename Arm, typename Space, typename Bounds_>
+using SearchOf = std::conditional_t<kIsProduct<Space>, StackSearch<Arm, Bounds_>, TipSearch<Arm, Space>>;
+
+template <typename Arm, typename Space, typename Batch = typename Arm::Scalar, typename Bounds_ = Bounds<>>
+class InverseKinematics {
+ public:
+  using Scalar = typename Arm::Scalar;
+  static constexpr int N = Arm::kDof;
+  using JointVector = Vector<N, Scalar>;
+  using Point = typename Space::template Point<Scalar>;
+  using Result = Posture<N, Scalar>;
+  using Limits_ = JointLimits<N, Scalar>;
+
+  /// The tip of an arm. Throws std::invalid_argument if an option is out of range, or a joint has no range.
+  InverseKinematics(const Arm& arm, Space, const InverseOptions<Scalar>& options = {})
+      : InverseKinematics(Parts{arm, options, arm.limits(), {}}) {}
+  /// limits: only the ranges are used.
+  InverseKinematics(const Arm& arm, Space, const InverseOptions<Scalar>& options, const Limits_& limits)
+      : InverseKinematics(Parts{arm, options, limits, {}}) {}
+
+  /// A stack of tasks of a robot, within bounds. Throws as above, and if a task does not suit the robot.
+  template <typename Robot_, typename... Levels>
+  InverseKinematics(const Robot_& robot, const Stack<Levels...>& stack, const InverseOptions<Scalar>& options = {})
+      : InverseKinematics(Parts{Arm(robot, stack), options, robot.limits(), {}}) {}
+  template <typename Robot_, typename... Levels>
+  InverseKinematics(const Robot_& robot, const Stack<Levels...>& stack, const InverseOptions<Scalar>& options,
+                    const Limits_& limits, const Bounds_& bounds = {})
+      : InverseKinematics(Parts{Arm(robot, stack), options, limits, bounds}) {}
+
+  /// A posture for the target. start: the first posture from which the search starts, moved into the ranges. From a
+  /// start near the target, the result is the nearest posture.
+  [[nodiscard]] Result solve(const Point& target, const JointVector& start) noexcept {
+    return search(target, start, [](const Result&) noexcept { return true; });
+  }
+
+  /// Calls found(posture) for the solution of each attempt, until found() returns true or all starts are used. Returns
+  /// the last solution, or if there is none, the nearest posture found.
+  template <typename Found>
+  Result search(const Point& target, const JointVector& start, Found&& found) noexcept {
+    const One one = make_search<One>(arm_, target);
+    typename One::Trial best;
+    const JointVector inside = ranges_.clamp(start);
+    Result result{start, Status::kNotFinite, std::numeric_limits<Scalar>::infinity(), 1};
+    {
+      Attempts first(one);
+      first.start(true, inside, Scalar(kPatience));
+      if (!is_finite(start) || !std::isfinite(first.now().cost)) return result;
+      result.status = Status::kNotFound;
+      while (!one.reached(first.now()) && !first.step()) {
+      }
+      best = first.now();
+      if (one.reached(best)) {
+        first.settle();
+        result = solution(first.now().q, target, start, 1);
+        if (found(result)) return result;
+      }
+    }
+    search_from_starts(one, target, inside, best, result, found);
+    if (!result.solved()) {
+      result.q = ranges_.near(best.q, start);
+      result.error = error_of(result.q, target);
+    }
+    return result;
+  }
+
+ private:
+  struct Parts {
+    Arm arm;
+    InverseOptions<Scalar> options;
+    Limits_ limits;
+    Bounds_ bounds;
+  };
+  explicit InverseKinematics(const Parts& parts)
+      : arm_(parts.arm),
+        batch_(arm_in<Batch>(parts.arm)),
+        options_(parts.options),
+        bounds_(parts.bounds),
+        ranges_{parts.limits.lower, parts.limits.upper} {
+    validation::require_positive("tolerance", options_.tolerance);
+    if (options_.starts < 1) validation::fail("starts", options_.starts, "at least 1");
+    validation::require_size("limits", ranges_.lower.size(), arm_.dof());
+    for (Eigen::Index i = 0; i < ranges_.lower.size(); ++i) {
+      if (!(ranges_.lower(i) <= ranges_.upper(i))) {
+        validation::fail(validation::element("limits.lower", i), ranges_.lower(i),
+                         "at most upper = ", ranges_.upper(i));
+      }
+    }
+    examine_joints();
+  }
+
+  using One = SearchOf<Arm, Space, Bounds_>;
+  using BatchArm = decltype(arm_in<Batch>(std::declval<const Arm&>()));
+  using Many = SearchOf<BatchArm, Space, Bounds_>;
+  static constexpr std::size_t kLanes = sizeof(Batch) / sizeof(Scalar);
+
+  /// Steps of an attempt that may be slow. Later attempts have more patience, for targets near singular postures.
+  static constexpr int kPatience = 4;
+  static constexpr int kStartsPerPatience = 16;
+  /// An attempt starts from the posture nearest to the target of this number of postures.
+  static constexpr int kCandidates = 4;
+
+  template <typename Search, typename Arm_>
+  [[nodiscard]] Search make_search(const Arm_& arm, const Point& target) noexcept {
+    using In = typename Search::Scalar;
+    using Joints = typename Search::JointVector;
+    const auto cast = [](const JointVector& q) noexcept {
+      return Joints(entrywise_as<In>(q, [&](Eigen::Index i) { return In(q.coeff(i)); }));
+    };
+    if constexpr (Search::kHasRest) {
+      return Search(arm, length_, bounds_, cast(ranges_.lower), cast(ranges_.upper), target, options_.tolerance);
+    } else {
+      typename Space::template Point<In> targets;
+      if constexpr (kInLanes<In>) {
+        for (std::size_t lane = 0; lane < kLanes; ++lane) set_lane(targets, lane, target);
+      } else {
+        targets = target;
+      }
+      return Search(arm, In(length_), cast(ranges_.lower), cast(ranges_.upper), targets, In(options_.tolerance));
+    }
+  }
+
+  /// Attempts from start postures that fill the ranges. Sets `best` to the nearest posture that gives up, and `result`
+  /// to the last solution.
+  template <typename Found>
+  void search_from_starts(const One& one, const Point& target, const JointVector& start, typename One::Trial& best,
+                          Result& result, Found& found) noexcept {
+    const Many many = make_search<Many>(batch_, target);
+    const SpreadPostures<N, Batch> spread(ranges_, start, static_cast<Scalar>(options_.seed));
+    Attempts attempts(many);
+    Mask<Batch> active(false);
+    Batch number = lane_numbers();
+    for (;;) {
+      Mask<Batch> starting(false);
+      each_lane(!active, [&](std::size_t lane) noexcept {
+        if (result.starts == options_.starts) return;
+        ++result.starts;
+        set(starting, lane);
+        set(active, lane);
+      });
+      if (none_of(active)) return;
+      if (any_of(starting)) {
+        const int patience = kPatience + result.starts / kStartsPerPatience;
+        attempts.start(starting, nearest_candidate(many, spread, number), Batch(Scalar(patience)));
+        number += Batch(Scalar(kLanes));
+      }
+      const Mask<Batch> gives_up = active && attempts.step();
+      const Mask<Batch> reached = active && many.reached(attempts.now());
+      active = active && !(gives_up || reached);
+      bool is_done = false;
+      each_lane(reached, [&](std::size_t lane) noexcept {
+        if (is_done) return;
+        if constexpr (!kInLanes<Batch>) attempts.settle();
+        result = solution(lane_of_posture(attempts.now().q, lane), target, start, result.starts);
+        is_done = found(result);
+      });
+      if (is_done) return;
+      each_lane(gives_up && !reached, [&](std::size_t lane) noexcept { keep_better(one, attempts.now(), lane, best); });
+    }
+  }
+
+  /// The posture nearest to the target of kCandidates postures, in each lane.
+  [[nodiscard]] static typename Many::JointVector nearest_candidate(const Many& many,
+                                                                    const SpreadPostures<N, Batch>& spread,
+                                                                    const Batch& number) noexcept {
+    const Batch first = Batch(Scalar(kCandidates)) * number;
+    auto best = spread(first);
+    Batch least = many.cost(best);
+    for (int i = 1; i < kCandidates; ++i) {
+      const auto q = spread(first + Batch(Scalar(i)));
+      const Batch cost = many.cost(q);
+      const Mask<Batch> better = cost < least;
+      least = select(better, cost, least);
+      best = entrywise(q, [&](Eigen::Index j) { return select(better, q.coeff(j), best.coeff(j)); });
+    }
+    return best;
+  }
+
+  static void keep_better(const One& one, const typename Many::Trial& now, std::size_t lane,
+                          typename One::Trial& best) noexcept {
+    if constexpr (kInLanes<Batch>) {
+      if (!(now.cost[lane] < best.cost)) return;
+      best.cost = now.cost[lane];
+      best.q = lane_of(now.q, lane);
+    } else {
+      one.take(one.better(now, best), now, best);
+    }
+  }
+
+  [[nodiscard]] Result solution(const JointVector& q, const Point& target, const JointVector& start,
+                                int starts) const noexcept {
+    const JointVector near = ranges_.near(q, start);
+    return {near, Status::kOk, error_of(near, target), starts};
+  }
+  [[nodiscard]] Scalar error_of(const JointVector& q, const Point& target) const noexcept {
+    Kinematics<Space, N, Scalar> kinematics;
+    points_of(arm_, q, kinematics, 0);
+    return One::largest_error(kinematics, target);
+  }
+
+  [[nodiscard]] static Batch lane_numbers() noexcept {
+    if constexpr (kInLanes<Batch>) {
+      return Batch([](auto lane) { return Scalar(lane); });
+    } else {
+      return Batch(0);
+    }
+  }
+  template <typename F>
+  static void each_lane(const Mask<Batch>& lanes, F&& f) noexcept {
+    if constexpr (kInLanes<Batch>) {
+      if (none_of(lanes)) return;
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        if (lanes[lane]) f(lane);
+      }
+    } else {
+      if (lanes) f(std::size_t(0));
+    }
+  }
+  static void set(Mask<Batch>& lanes, [[maybe_unused]] std::size_t lane) noexcept {
+    if constexpr (kInLanes<Batch>) {
+      lanes[lane] = true;
+    } else {
+      lanes = true;
+    }
+  }
+  [[nodiscard]] static JointVector lane_of_posture(const typename Many::JointVector& q,
+                                                   [[maybe_unused]] std::size_t lane) noexcept {
+    if constexpr (kInLanes<Batch>) {
+      return lane_of(q, lane);
+    } else {
+      return q;
+    }
+  }
+
+  /// Finds the characteristic length, and the periodic and idle joints by the points of the tasks in a few postures.
+  void examine_joints() noexcept {
+    const auto origin = filled<JointVector>(ranges_.lower.size());
+    const SpreadPostures<N, Scalar> spread(ranges_, origin, Scalar(0));
+    Kinematics<Space, N, Scalar> kinematics;
+    points_of(arm_, spread(Scalar(1)), kinematics, 0);
+    length_ = kinematics.length;
+    for (Eigen::Index i = 0; i < origin.size(); ++i) {
+      bool periodic = true;
+      bool idle = true;
+      for (int k = 1; k <= 3; ++k) {
+        const JointVector q = spread(Scalar(k));
+        periodic = periodic && is_equal(q, i, static_cast<Scalar>(kTwoPi));
+        idle = idle && is_equal(q, i, Scalar(1));
+      }
+      if (periodic) ranges_.periodic |= joint_bit(i);
+      if (idle) ranges_.idle |= joint_bit(i);
+    }
+  }
+  /// Whether a displacement of joint i changes no task, up to round-off.
+  [[nodiscard]] bool is_equal(const JointVector& q, Eigen::Index i, Scalar displacement) const noexcept {
+    JointVector moved = q;
+    moved(i) += displacement;
+    Kinematics<Space, N, Scalar> before;
+    Kinematics<Space, N, Scalar> after;
+    points_of(arm_, q, before, 0);
+    points_of(arm_, moved, after, 0);
+    constexpr Scalar kRoundOff = Scalar(1e3) * std::numeric_limits<Scalar>::epsilon();
+    return norm(Space::template difference<Scalar>(after.tip, before.tip)) <= kRoundOff * (Scalar(1) + before.length);
+  }
+
+  Arm arm_;
+  BatchArm batch_;
+  InverseOptions<Scalar> options_;
+  Bounds_ bounds_;
+  JointRanges<N, Scalar> ranges_;
+  Scalar length_{1};  ///< Characteristic length [m].
+};
+
+template <typename Arm, typename Space, typename... More>
+InverseKinematics(const Arm&, Space, const InverseOptions<typename Arm::Scalar>&, const More&...)
+    -> InverseKinematics<Arm, Space>;
+template <typename Robot_, typename... Levels>
+InverseKinematics(const Robot_&, const Stack<Levels...>&)
+    -> InverseKinematics<RobotTasks<Robot_, Stack<Levels...>>, StackSpace<Levels...>>;
+template <typename Robot_, typename... Levels>
+InverseKinematics(const Robot_&, const Stack<Levels...>&, const InverseOptions<typename Robot_::Scalar>&)
+    -> InverseKinematics<RobotTasks<Robot_, Stack<Levels...>>, StackSpace<Levels...>>;
+template <typename Robot_, typename... Levels, typename Bounds_ = Bounds<>>
+InverseKinematics(const Robot_&, const Stack<Levels...>&, const InverseOptions<typename Robot_::Scalar>&,
+                  const JointLimits<Robot_::kDof, typename Robot_::Scalar>&, const Bounds_& = {})
+    -> InverseKinematics<RobotTasks<Robot_, Stack<Levels...>>, StackSpace<Levels...>, typename Robot_::Scalar, Bounds_>;
+
+}  // namespace fpbm
