@@ -69,6 +69,7 @@ void bind_scheme(py::module_& m) {
       .value("RECOVERING", Status::kRecovering,
              "The arm made no progress toward its target: it moves to a posture from which the target is reachable.")
       .value("STALLED", Status::kStalled, "The arm makes no progress toward its target: the arm stops.")
+      .value("NOT_FOUND", Status::kNotFound, "No posture at the target was found.")
       .value("SINGULAR", Status::kSingular, "The posture is singular.")
       .value("TASK_LOST", Status::kTaskLost, "The tip has left its reference.")
       .value("NOT_FINITE", Status::kNotFinite, "A number is not finite.")

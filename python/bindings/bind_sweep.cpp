@@ -18,7 +18,7 @@ struct Stop {
 using Schemes = std::vector<const Scheme*>;
 using Chunk = py::typing::Tuple<py::array, py::typing::List<Arrays>>;
 
-const LaneCode* lane_code = nullptr;
+const LaneCode* selected = nullptr;
 
 /// One start or several starts as rows.
 Array starts(const ArrayLike& q0s, int dof) {
@@ -100,7 +100,7 @@ Chunk sweep_chunk(const Arm& arm, const Path& path, const Schemes& schemes, cons
     }
     {
       const py::gil_scoped_release others_may_run;
-      sweep(arm, same, grid, jobs, pointer_to(limit_options), stack, lane_code, stop.flag, into);
+      sweep(arm, same, grid, jobs, pointer_to(limit_options), stack, selected, stop.flag, into);
     }
     py::typing::List<Arrays> arrays;
     for (const MotionArrays<Space>& each : whole) arrays.append(each.all());
@@ -121,13 +121,17 @@ std::vector<std::string> processor_kinds() {
   return kinds;
 }
 
-/// Selects the lane code of sweeps, or none, and returns the number of motions that run side by side.
+/// Selects the lane code, or none, and returns the number of motions that run side by side.
 int use_lanes(const py::object& code) {
-  lane_code = code.is_none() ? nullptr : static_cast<const LaneCode*>(py::capsule(code).get_pointer());
-  return lane_code == nullptr ? 1 : lane_code->lanes;
+  selected = code.is_none() ? nullptr : static_cast<const LaneCode*>(py::capsule(code).get_pointer());
+  return selected == nullptr ? 1 : selected->lanes;
 }
 
 }  // namespace
+
+const LaneCode* lane_code() noexcept {
+  return selected;
+}
 
 void bind_sweep(py::module_& m) {
   PYBIND11_NUMPY_DTYPE(MotionSummary<>, max_error, max_orientation_error, peak_velocity, final_velocity,

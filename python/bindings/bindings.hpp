@@ -18,5 +18,6 @@ void bind_sweep(py::module_& m);
 void bind_target_filter(py::module_& m);
 void bind_task(py::module_& m);
 void bind_realtime(py::module_& m);
+void bind_inverse(py::module_& m);
 
 }  // namespace fpbm::bindings

@@ -6,6 +6,15 @@ AnyBounds::AnyBounds(const Clearance<kDynamic>& clearance, const TaskBounds<kDyn
                      const SpeedBounds<kDynamic>& speeds)
     : all_(clearance, walls, speeds) {}
 
+AnyBounds::AnyBounds(const AnyBounds& other) = default;
+AnyBounds::AnyBounds(AnyBounds&& other) noexcept = default;
+AnyBounds::~AnyBounds() = default;
+
+void AnyBounds::gaps(const JointVector& q, double range,
+                     const std::function<void(double, const JointVector&)>& f) noexcept {
+  all_.gaps(q, range, f);
+}
+
 void AnyBounds::require(const JointVector& q) {
   all_.require(q);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "fpbm/bound/clearance.hpp"
 #include "fpbm/bound/speed_bounds.hpp"
@@ -19,6 +20,11 @@ class AnyBounds {
 
   AnyBounds(const Clearance<kDynamic>& clearance, const TaskBounds<kDynamic>& walls,
             const SpeedBounds<kDynamic>& speeds);
+  AnyBounds(const AnyBounds& other);
+  AnyBounds(AnyBounds&& other) noexcept;
+  AnyBounds& operator=(const AnyBounds&) = delete;
+  AnyBounds& operator=(AnyBounds&&) = delete;
+  ~AnyBounds();
 
   [[nodiscard]] Clearance<kDynamic>& clearance() noexcept { return all_.get<Clearance<kDynamic>>(); }
 
@@ -28,6 +34,7 @@ class AnyBounds {
   [[nodiscard]] Rows<kDynamic, kRows> rows(const NextMotion<kLevel, kDynamic>& next) noexcept;
   template <Level kLevel>
   [[nodiscard]] bool accepts(const State<kDynamic>& from, const Stop<kLevel, kDynamic>& stop) noexcept;
+  void gaps(const JointVector& q, double range, const std::function<void(double, const JointVector&)>& f) noexcept;
   [[nodiscard]] Status status(std::uint32_t active) const noexcept { return all_.status(active); }
   [[nodiscard]] double near_distance_sum() const noexcept { return all_.near_distance_sum(); }
   [[nodiscard]] bool moves_away() const noexcept { return all_.moves_away(); }

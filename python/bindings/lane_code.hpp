@@ -9,4 +9,13 @@ namespace fpbm::bindings {
 [[nodiscard]] RunInLanes<Position<3>> position_in_lanes() noexcept;
 [[nodiscard]] RunInLanes<Pose> pose_in_lanes() noexcept;
 
+template <int N>
+[[nodiscard]] std::unique_ptr<PostureSolver<Pose>> postures_in_lanes(const Chain<>& chain,
+                                                                     const InverseOptions<>& options,
+                                                                     const JointLimits<N>& limits);
+extern template std::unique_ptr<PostureSolver<Pose>> postures_in_lanes(const Chain<>&, const InverseOptions<>&,
+                                                                       const JointLimits<6>&);
+extern template std::unique_ptr<PostureSolver<Pose>> postures_in_lanes(const Chain<>&, const InverseOptions<>&,
+                                                                       const JointLimits<7>&);
+
 }  // namespace fpbm::bindings

@@ -7,7 +7,8 @@
 PyMODINIT_FUNC FPBM_LANE_INIT() {
   using namespace fpbm::bindings;
   constexpr auto kLanes = static_cast<int>(std::experimental::native_simd<double>::size());
-  static LaneCode code{kLanes, {plane_in_lanes(), position_in_lanes(), pose_in_lanes()}};
+  static LaneCode code{
+      kLanes, {plane_in_lanes(), position_in_lanes(), pose_in_lanes()}, {&postures_in_lanes<6>, &postures_in_lanes<7>}};
   static PyModuleDef definition = {PyModuleDef_HEAD_INIT,
                                    FPBM_LANE_MODULE,
                                    "Motions side by side in the lanes of one kind of processor.",

@@ -14,6 +14,7 @@
 #include "fpbm/simulate/summary.hpp"
 #include "fpbm/simulate/time_grid.hpp"
 #include "lane_tracker.hpp"
+#include "posture_solver.hpp"
 
 namespace fpbm::bindings {
 
@@ -60,6 +61,10 @@ using RunInLanes = void (*)(const ArmInLanes<Space>& arm, const AnyPath<Space>& 
 struct LaneCode {
   int lanes;
   std::tuple<RunInLanes<Position<2>>, RunInLanes<Position<3>>, RunInLanes<Pose>> run;
+  std::tuple<PosturesInLanes<6>, PosturesInLanes<7>> postures;
 };
+
+/// The selected code in lanes, or null.
+[[nodiscard]] const LaneCode* lane_code() noexcept;
 
 }  // namespace fpbm::bindings

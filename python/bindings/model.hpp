@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,8 +29,9 @@ struct Model {
 
   Tree<> tree;
   Robot<kDynamic> robot;
-  bool planar;                           ///< Whether the model is a planar arm.
-  std::vector<std::string> joint_names;  ///< Names of the drives.
+  bool planar;                            ///< Whether the model is a planar arm.
+  std::vector<std::string> joint_names;   ///< Names of the drives.
+  mutable std::shared_ptr<void> inverse;  ///< The solver of the last call of inverse().
 };
 
 }  // namespace fpbm::bindings

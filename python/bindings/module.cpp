@@ -53,4 +53,5 @@ PYBIND11_MODULE(_core, m) {
   fpbm::bindings::bind_target_filter(m);
   fpbm::bindings::bind_task(m);
   fpbm::bindings::bind_realtime(m);
+  fpbm::bindings::bind_inverse(m);
 }

@@ -8,10 +8,13 @@ are radians, metres and seconds. Numbers in brackets are the equations of Wang e
 from . import arms, joints, paths, robots, schemes, tasks
 from ._core import (
     MAX_DOF,
+    InverseKinematics,
     Kinematics,
     Limiter,
     Nearest,
     PathFollower,
+    Posture,
+    Postures,
     SaturatedLevels,
     SaturatedMotion,
     Status,
@@ -34,6 +37,7 @@ from .motion.comparison import Comparison, comparison
 from .motion.run import Run
 from .motion.run_data import RunStatus
 from .motion.simulation import simulate, track
+from .motion.start_posture import PathFailure, StartPosture, start_posture
 from .motion.sweeping import Sweep, SweepInterrupted, sweep
 from .obstacle import Cuboid, HalfSpace
 from .paths import *
@@ -47,6 +51,7 @@ from .viewer import servo, view
 __all__ = ["Run", "RunStatus", "Sweep", "Tuning", "load", "simulate", "sweep", "track", "tune"]
 __all__ += ["Comparison", "comparison", "servo", "view"]
 __all__ += ["Capsule", "Clearance", "Cuboid", "HalfSpace", "Nearest"]
+__all__ += ["InverseKinematics", "PathFailure", "Posture", "Postures", "StartPosture", "start_posture"]
 __all__ += ["Kinematics", "Limiter", "PathFollower", "SaturatedMotion", "Status", "TargetFilter", "Tick"]
 __all__ += ["SaturatedLevels", "TaskBounds", "Tracker", "failed", "saturate"]
 __all__ += ["MAX_DOF", "ParameterError", "ResolutionError", "SweepInterrupted", "TuneInterrupted", "UrdfWarning"]

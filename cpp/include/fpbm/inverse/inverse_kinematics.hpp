@@ -92,6 +92,9 @@ class InverseKinematics {
     return search(target, start, [](const Result&) noexcept { return true; });
   }
 
+  /// Points of the tasks in the posture q, in the base frame.
+  [[nodiscard]] Point tip(const JointVector& q) const noexcept { return kinematics_at(q).tip; }
+
   /// Calls found(posture) for the solution of each attempt, until found() returns true or all starts are used. Returns
   /// the last solution, or if there is none, the nearest posture found.
   template <typename Found>
@@ -245,15 +248,18 @@ class InverseKinematics {
     }
   }
 
+  [[nodiscard]] Kinematics<Space, N, Scalar> kinematics_at(const JointVector& q) const noexcept {
+    Kinematics<Space, N, Scalar> kinematics;
+    arm_.kinematics(q, kinematics);
+    return kinematics;
+  }
   [[nodiscard]] Result solution(const JointVector& q, const Point& target, const JointVector& start,
                                 int starts) const noexcept {
     const JointVector near = ranges_.near(q, start);
     return {near, Status::kOk, error_of(near, target), starts};
   }
   [[nodiscard]] Scalar error_of(const JointVector& q, const Point& target) const noexcept {
-    Kinematics<Space, N, Scalar> kinematics;
-    points_of(arm_, q, kinematics, 0);
-    return One::largest_error(kinematics, target);
+    return One::largest_error(kinematics_at(q), target);
   }
 
   [[nodiscard]] static Batch lane_numbers() noexcept {
@@ -294,9 +300,7 @@ class InverseKinematics {
   void examine_joints() noexcept {
     const auto origin = filled<JointVector>(ranges_.lower.size());
     const SpreadPostures<N, Scalar> spread(ranges_, origin, Scalar(0));
-    Kinematics<Space, N, Scalar> kinematics;
-    points_of(arm_, spread(Scalar(1)), kinematics, 0);
-    length_ = kinematics.length;
+    length_ = kinematics_at(spread(Scalar(1))).length;
     for (Eigen::Index i = 0; i < origin.size(); ++i) {
       bool periodic = true;
       bool idle = true;
@@ -313,12 +317,9 @@ class InverseKinematics {
   [[nodiscard]] bool is_equal(const JointVector& q, Eigen::Index i, Scalar displacement) const noexcept {
     JointVector moved = q;
     moved(i) += displacement;
-    Kinematics<Space, N, Scalar> before;
-    Kinematics<Space, N, Scalar> after;
-    points_of(arm_, q, before, 0);
-    points_of(arm_, moved, after, 0);
+    const auto before = kinematics_at(q);
     constexpr Scalar kRoundOff = Scalar(1e3) * std::numeric_limits<Scalar>::epsilon();
-    return norm(Space::template difference<Scalar>(after.tip, before.tip)) <= kRoundOff * (Scalar(1) + before.length);
+    return norm(Space::template difference<Scalar>(kinematics_at(moved).tip, before.tip)) <= kRoundOff * (Scalar(1) + before.length);
   }
 
   Arm arm_;

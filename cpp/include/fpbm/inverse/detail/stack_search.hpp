@@ -85,8 +85,7 @@ class StackSearch {
   [[nodiscard]] Scalar cost(const JointVector& q) const noexcept {
     Trial trial;
     trial.q = q;
-    arm_.points(q, trial.kinematics);
-    set_errors(trial);
+    evaluate(trial);
     return trial.cost;
   }
   [[nodiscard]] bool reached(const Trial& trial) const noexcept {

@@ -1,0 +1,465 @@
+#include <pybind11/typing.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "arrays.hpp"
+#include "clearance.hpp"
+#include "lanes.hpp"
+#include "postures.hpp"
+#include "read_stack.hpp"
+
+namespace fpbm::bindings {
+namespace {
+
+/// A posture in Python.
+struct PyPosture {
+  AnyPosture found;
+};
+
+/// Postures for several targets.
+struct PyPostures {
+  Array q;
+  py::array_t<bool> solved;
+  Array error;
+  py::array_t<int> starts;
+  std::vector<Status> status;
+};
+
+/// A rotation with errors up to kLargest is replaced by the nearest rotation.
+Transform<> rounded_transform(const ArrayLike& given, const std::string& name) {
+  constexpr double kLargest = 1e-3;
+  const auto H = matrix<Eigen::Matrix4d>(given, name.c_str(), 4, 4);
+  const Eigen::Matrix3d R = H.topLeftCorner<3, 3>();
+  const double error = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (!(error <= kLargest)) {
+    validation::fail(validation::Argument(name) + ".R's largest error of R'R", error,
+                     "at most 0.001: must be a rotation matrix");
+  }
+  Eigen::Matrix4d rounded = H;
+  rounded.topLeftCorner<3, 3>() = nearest_rotation(nearest_rotation(Matrix<3, 3>(R)));
+  return transform_of(rounded, [&] { return validation::Argument(name); });
+}
+
+template <typename Space>
+[[nodiscard]] typename Space::template Point<double> target_of(const ArrayLike& given, const std::string& name) {
+  if constexpr (std::is_same_v<Space, Pose>) {
+    return rounded_transform(given, name);
+  } else {
+    return fixed_vector<Space::kSize>(given, name.c_str());
+  }
+}
+
+/// Entry i of an array along its first axis.
+[[nodiscard]] ArrayLike entry(const py::handle& array, py::ssize_t i) {
+  return ArrayLike(py::object(array[py::int_(i)]));
+}
+
+/// Number of targets in an array of targets of the given dimensions, or none for one target.
+[[nodiscard]] std::optional<py::ssize_t> count_of(const py::handle& given, int dimensions) {
+  const auto array = py::array::ensure(given);
+  PyErr_Clear();
+  if (!array || array.ndim() != dimensions + 1) return std::nullopt;
+  return array.shape(0);
+}
+
+/// Targets of the tip of an arm.
+template <typename Space_>
+struct TipTargets {
+  using Space = Space_;
+  using Point = typename Space::template Point<double>;
+
+  std::unique_ptr<PostureSolver<Space>> solver;
+
+  [[nodiscard]] static std::optional<py::ssize_t> count(const py::object& given) {
+    return count_of(given, std::is_same_v<Space, Pose> ? 2 : 1);
+  }
+  /// The target, or target i of several.
+  [[nodiscard]] static Point read(const py::object& given, std::optional<py::ssize_t> i, const JointVector&) {
+    return i ? target_of<Space>(entry(given, *i), "target[" + std::to_string(*i) + "]")
+             : target_of<Space>(ArrayLike(given), "target");
+  }
+};
+
+/// Targets of the tasks of a stack: a dictionary by task name. With `is_tip`, a target of the only task.
+struct StackTargets {
+  using Space = AnyStack::Space;
+  using Point = AnyStack::Point;
+
+  std::unique_ptr<PostureSolver<Space>> solver;
+  StackPlan plan;
+  bool is_tip = false;
+
+  [[nodiscard]] std::optional<py::ssize_t> count(const py::object& given) const {
+    std::optional<py::ssize_t> several;
+    for (const auto& [task, target] : parts(given)) {
+      const bool is_matrix = task->kind == TaskKind::kPose || task->kind == TaskKind::kOrientation;
+      const auto count = count_of(target, is_matrix ? 2 : 1);
+      if (count && several.value_or(*count) != *count) {
+        validation::fail(validation::Argument("number of targets of '") + task->name + "'", static_cast<int>(*count),
+                         "equal to the number of the other targets = ", static_cast<int>(*several));
+      }
+      if (count) several = count;
+    }
+    return several;
+  }
+
+  /// Tasks without a target in the dictionary keep the target of the stack or, without one, their point at the start.
+  [[nodiscard]] Point read(const py::object& given, std::optional<py::ssize_t> i, const JointVector& start) const {
+    auto reference = Reference<Space>::hold(solver->tip(start));
+    for (std::size_t k = 0; k < plan.tasks.size(); ++k) {
+      if (plan.targets[k]) plan.tasks[k].put(*plan.targets[k], reference);
+    }
+    for (const auto& [task, target] : parts(given)) {
+      task->put(of_task(*task, i ? py::object(entry(target, *i)) : target), reference);
+    }
+    return reference.x;
+  }
+
+ private:
+  [[nodiscard]] std::vector<std::pair<const StackTask*, py::object>> parts(const py::object& given) const {
+    if (is_tip) return {{&plan.tasks.front(), given}};
+    if (!py::isinstance<py::dict>(given)) reject_type(given, "target", "a dictionary of targets by task name");
+    std::vector<std::pair<const StackTask*, py::object>> parts;
+    for (const auto& [name, target] : py::cast<py::dict>(given)) {
+      parts.emplace_back(&plan.task(py::cast<std::string>(name)), py::reinterpret_borrow<py::object>(target));
+    }
+    return parts;
+  }
+  [[nodiscard]] static StackTarget of_task(const StackTask& task, const py::object& given) {
+    if (task.kind == TaskKind::kPose && !py::isinstance<py::tuple>(given)) {
+      return {rounded_transform(ArrayLike(given), task.name), {}, JointVector::Zero(6), JointVector::Zero(6)};
+    }
+    return read_target(task, given);
+  }
+};
+
+using AnyTargets = std::variant<TipTargets<Position<2>>, TipTargets<PlanarPose>, TipTargets<Position<3>>,
+                                TipTargets<Pose>, StackTargets>;
+
+/// Solver in lanes for the pose of a chain of six or seven joints, or null.
+template <int N>
+std::unique_ptr<PostureSolver<Pose>> in_lanes(const Arm& arm, const InverseOptions<>& options,
+                                              const JointLimits<kDynamic>& limits) {
+  const auto* chain = std::get_if<Chain<>>(&arm.source);
+  if (lane_code() == nullptr || chain == nullptr || arm.dof() != N || chain->joints.size() != N) return nullptr;
+  return std::get<PosturesInLanes<N>>(lane_code()->postures)(
+      *chain, options, {limits.lower, limits.upper, limits.velocity, limits.acceleration});
+}
+
+/// The task of the tip of an arm in space as a plan of one task.
+[[nodiscard]] StackPlan plan_of_tip(const Model& model, bool is_pose) {
+  const auto [link, offset] = model.frame("tip");
+  const auto kind = is_pose ? TaskKind::kPose : TaskKind::kPosition;
+  AnyFrameTask::Selection all{};
+  all.fill(true);
+  const AnyFrameTask tip(is_pose ? FrameCoordinates::kPose : FrameCoordinates::kPosition, LinkFrame<>(link, offset),
+                         TaskGains<>(1.0, 1.0), all, false);
+  const AnyLevel none(AnyFrameTask{}, AnyFrameTask{}, AnyPostureTask{});
+  const AnyStack stack(AnyLevel(tip, AnyFrameTask{}, AnyPostureTask{}), none, none, none);
+  return {model.tree, {{"target", kind, 0, is_pose ? 6 : 3, {}}}, {std::nullopt}, 1, stack, stack};
+}
+
+StackTargets stack_targets(const Model& model, const StackPlan& plan, const InverseOptions<>& options,
+                           const JointLimits<kDynamic>& limits, const py::object& bounds, bool is_tip) {
+  return {posture_solver(model.tree, plan.velocity, options, limits, bounds_of(model, bounds)), plan, is_tip};
+}
+
+AnyTargets targets_of(const Model& model, const std::string& task, const py::object& stack,
+                      const InverseOptions<>& options, const JointLimits<kDynamic>& limits, const py::object& bounds) {
+  if (!stack.is_none()) return stack_targets(model, read_stack(stack, model), options, limits, bounds, false);
+  const auto* arm = dynamic_cast<const Arm*>(&model);
+  if (arm == nullptr) validation::reject("stack", ": must be given for a Robot, which has no tip of its own");
+  return arm->visit(task, [&](const auto& any, auto space) -> AnyTargets {
+    using Space = decltype(space);
+    if (py::len(py::tuple(bounds)) > 0) {
+      if (model.planar) validation::reject("bounds", ": a planar arm needs a stack: give stack=fp.Stack(…)");
+      return stack_targets(model, plan_of_tip(model, Space::kTurns > 0), options, limits, bounds, true);
+    }
+    if constexpr (std::is_same_v<Space, Pose>) {
+      if (auto seven = in_lanes<7>(*arm, options, limits)) return TipTargets<Pose>{std::move(seven)};
+      if (auto six = in_lanes<6>(*arm, options, limits)) return TipTargets<Pose>{std::move(six)};
+    }
+    return TipTargets<Space>{posture_solver<Space>(any, options, limits)};
+  });
+}
+
+class PyInverse {
+ public:
+  PyInverse(const Model& model, const std::string& task, const py::object& stack, const py::object& limits,
+            const py::object& bounds, double tolerance, int starts, std::uint32_t seed)
+      : limits_(limits_of(model, limits)),
+        any_(targets_of(model, task, stack, {tolerance, starts, seed}, limits_, bounds)) {}
+
+  /// A posture for a target, or an array of postures for several targets.
+  [[nodiscard]] std::variant<PyPosture, PyPostures> solve(const py::object& target, const OptionalArray& start) {
+    return std::visit(
+        [&](auto& of) -> std::variant<PyPosture, PyPostures> {
+          if (const auto count = of.count(target)) return solve_many(of, target, *count, start);
+          const JointVector q0 = start_of(start);
+          const auto point = of.read(target, std::nullopt, q0);
+          const py::gil_scoped_release others_may_run;
+          const std::lock_guard lock(mutex_);
+          return PyPosture{of.solver->solve(point, q0)};
+        },
+        any_);
+  }
+
+  /// Distinct postures, the nearest to the start first.
+  [[nodiscard]] std::vector<PyPosture> solve_all(const py::object& target, const OptionalArray& start,
+                                                 std::size_t count) {
+    const JointVector q0 = start_of(start);
+    std::vector<AnyPosture> found;
+    std::visit(
+        [&](auto& of) {
+          const auto point = of.read(target, std::nullopt, q0);
+          const py::gil_scoped_release others_may_run;
+          const std::lock_guard lock(mutex_);
+          of.solver->search(point, q0, [&](const AnyPosture& posture) {
+            if (std::none_of(found.begin(), found.end(), [&](const auto& known) { return is_same(known, posture); })) {
+              found.push_back(posture);
+            }
+            return false;
+          });
+        },
+        any_);
+    std::sort(found.begin(), found.end(),
+              [&](const auto& a, const auto& b) { return (a.q - q0).norm() < (b.q - q0).norm(); });
+    if (found.size() > count) found.resize(count);
+    std::vector<PyPosture> result;
+    for (const AnyPosture& each : found) result.push_back({each});
+    return result;
+  }
+
+ private:
+  /// Largest difference of equal postures [rad or m].
+  static constexpr double kSame = 1e-3;
+
+  [[nodiscard]] int dof() const noexcept { return static_cast<int>(limits_.lower.size()); }
+
+  /// Two postures with differences of whole turns are the same.
+  [[nodiscard]] bool is_same(const AnyPosture& a, const AnyPosture& b) const noexcept {
+    for (Eigen::Index i = 0; i < a.q.size(); ++i) {
+      const double difference = std::abs(a.q(i) - b.q(i));
+      const bool turned = limits_.upper(i) - limits_.lower(i) >= kTwoPi && std::abs(difference - kTwoPi) <= kSame;
+      if (difference > kSame && !turned) return false;
+    }
+    return true;
+  }
+
+  /// The start, or the middle of the ranges.
+  [[nodiscard]] JointVector start_of(const OptionalArray& given) const {
+    if (given) return joint_vector(*given, "start", dof());
+    return entrywise(limits_.lower, [&](Eigen::Index i) {
+      const double middle = (limits_.lower(i) + limits_.upper(i)) / 2.0;
+      return std::isfinite(middle) ? middle : std::min(std::max(0.0, limits_.lower(i)), limits_.upper(i));
+    });
+  }
+  /// Start i, or the start of all targets.
+  [[nodiscard]] JointVector start_of(const OptionalArray& given, py::ssize_t i, py::ssize_t count) const {
+    if (!given || dimensions(*given) != 2) return start_of(given);
+    const auto rows = real_array(*given, "start", 2);
+    if (rows.shape(0) != count) {
+      validation::fail("start's number of rows", static_cast<int>(rows.shape(0)),
+                       "equal to the number of targets = ", static_cast<int>(count));
+    }
+    return start_of(ArrayLike(entry(rows, i)));
+  }
+
+  template <typename Targets_>
+  [[nodiscard]] auto clone(Targets_& of) {
+    const std::lock_guard lock(mutex_);
+    return of.solver->clone();
+  }
+  template <typename Targets_>
+  [[nodiscard]] PyPostures solve_many(Targets_& of, const py::object& target, py::ssize_t count,
+                                      const OptionalArray& start) {
+    std::vector<JointVector> starts;
+    std::vector<typename Targets_::Point> targets;
+    for (py::ssize_t i = 0; i < count; ++i) {
+      starts.push_back(start_of(start, i, count));
+      targets.push_back(of.read(target, i, starts.back()));
+    }
+    std::vector<AnyPosture> found(targets.size());
+    {
+      const py::gil_scoped_release others_may_run;
+      const std::size_t most = std::max(std::thread::hardware_concurrency(), 1U);
+      const std::size_t share = (targets.size() + most - 1) / most;
+      std::vector<std::thread> threads;
+      for (std::size_t first = 0; first < targets.size(); first += share) {
+        threads.emplace_back([&, first, last = std::min(first + share, targets.size())] {
+          const auto own = clone(of);
+          for (std::size_t i = first; i < last; ++i) found[i] = own->solve(targets[i], starts[i]);
+        });
+      }
+      for (std::thread& thread : threads) thread.join();
+    }
+    PyPostures all{Array({count, py::ssize_t{dof()}}), py::array_t<bool>(count), Array(count), py::array_t<int>(count)};
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const auto at = static_cast<py::ssize_t>(i);
+      std::copy_n(found[i].q.data(), dof(), all.q.mutable_data(at, 0));
+      all.solved.mutable_at(at) = found[i].solved();
+      all.error.mutable_at(at) = found[i].error;
+      all.starts.mutable_at(at) = found[i].starts;
+      all.status.push_back(found[i].status);
+    }
+    return all;
+  }
+
+  JointLimits<kDynamic> limits_;
+  AnyTargets any_;
+  std::mutex mutex_;  ///< Of the solver: the interpreter's lock is released.
+};
+
+/// The last solver of a model, for repeated calls of inverse() with the same options.
+struct InverseMemory {
+  std::string task;
+  std::vector<py::object> objects;  ///< stack, limits and each of the bounds.
+  double tolerance;
+  int starts;
+  std::uint32_t seed;
+  std::shared_ptr<PyInverse> solver;
+};
+
+/// The solver of a model with these options, of the last call or new.
+std::shared_ptr<PyInverse> solver_of(const Model& model, const std::string& task, const py::object& stack,
+                                     const py::object& limits, const py::object& bounds, double tolerance, int starts,
+                                     std::uint32_t seed) {
+  std::vector<py::object> objects{stack, limits};
+  if (!py::isinstance<py::iterable>(bounds)) (void)bounds_of(model, bounds);
+  for (const py::handle each : bounds) objects.push_back(py::reinterpret_borrow<py::object>(each));
+  auto memory = std::static_pointer_cast<InverseMemory>(model.inverse);
+  const bool same = memory && memory->task == task && memory->tolerance == tolerance && memory->starts == starts &&
+                    memory->seed == seed &&
+                    std::equal(objects.begin(), objects.end(), memory->objects.begin(), memory->objects.end(),
+                               [](const py::object& a, const py::object& b) { return a.is(b); });
+  if (!same) {
+    auto solver = std::make_shared<PyInverse>(model, task, stack, limits, bounds, tolerance, starts, seed);
+    memory = std::make_shared<InverseMemory>(
+        InverseMemory{task, std::move(objects), tolerance, starts, seed, std::move(solver)});
+    model.inverse = memory;
+  }
+  return memory->solver;
+}
+
+void bind_postures(py::module_& m) {
+  py::class_<PyPosture>(m, "Posture", "A posture for a target: the result of inverse kinematics.")
+      .def_property_readonly(
+          "q", [](const PyPosture& self) { return array_of(self.found.q); },
+          "The posture, or the nearest posture found [rad], or [m] for a prismatic joint, shape (n,).")
+      .def_property_readonly(
+          "solved", [](const PyPosture& self) { return self.found.solved(); },
+          "Whether the target is reached within the tolerance, the ranges and the bounds.")
+      .def_property_readonly(
+          "error", [](const PyPosture& self) { return self.found.error; },
+          "Largest distance [m] or angle [rad] from the target.")
+      .def_property_readonly(
+          "status", [](const PyPosture& self) { return self.found.status; }, "OK or NOT_FOUND.")
+      .def_property_readonly(
+          "starts", [](const PyPosture& self) { return self.found.starts; }, "Number of start postures used.")
+      .def("__repr__", [](const PyPosture& self) {
+        const std::string state = self.found.solved() ? "solved" : "not found";
+        return "<Posture " + state + ", error " + py::cast<std::string>(py::str(py::float_(self.found.error))) +
+               ", q = " + py::cast<std::string>(py::str(array_of(self.found.q))) + ">";
+      });
+  py::class_<PyPostures>(m, "Postures", "Postures for K targets.")
+      .def_readonly("q", &PyPostures::q, "The postures, shape (K, n) [rad or m].")
+      .def_readonly("solved", &PyPostures::solved, "Whether each target is reached, shape (K,).")
+      .def_readonly("error", &PyPostures::error, "Largest distance [m] or angle [rad] from each target, shape (K,).")
+      .def_readonly("status", &PyPostures::status, "OK or NOT_FOUND, for each target.")
+      .def_readonly("starts", &PyPostures::starts, "Number of start postures used for each target, shape (K,).");
+}
+
+}  // namespace
+
+void bind_inverse(py::module_& m) {
+  bind_postures(m);
+  const auto none = py::none();
+  const auto task = py::arg("task") = "pose";
+  const auto stack = py::arg("stack") = none;
+  const auto limits = py::arg("limits") = none;
+  const auto bounds = py::arg("bounds") = py::tuple();
+  const auto tolerance = py::arg("tolerance") = InverseOptions<>().tolerance;
+  const auto starts = py::arg("starts") = InverseOptions<>().starts;
+  const auto seed = py::arg("seed") = InverseOptions<>().seed;
+
+  py::class_<PyInverse, std::shared_ptr<PyInverse>>(
+      m, "InverseKinematics", R"(Postures for targets, within the ranges of the joints: inverse kinematics.
+
+From the given start, and then from start postures that fill the ranges evenly, a search makes damped Newton steps until
+the target is reached. The result depends on the arguments only.
+
+Parameters
+----------
+arm : Arm or Robot
+    A Robot needs a stack.
+task : str
+    Task of the tip: 'position' or 'pose'.
+stack : Stack, optional
+    Several tasks in strict priority, which replace task. The tasks of the first level, and all tasks except postures,
+    must reach their targets; a PostureTask below the first level is approached as far as the other tasks allow.
+limits : JointLimits, optional
+    Changes of the limits of the arm, or all limits. Only the ranges are used.
+bounds : sequence of Clearance and TaskBounds
+    Bounds that the postures keep: obstacles, self-collision, walls, cones.
+tolerance : float
+    Largest distance [m] and angle [rad] from a target.
+starts : int
+    Largest number of start postures, the given start included.
+seed : int
+    Selects the start postures after the given start.
+
+Raises
+------
+ParameterError
+    If an argument is out of range, or a task or a bound does not suit the arm.)")
+      .def(py::init([](const Given<Model>& arm, const std::string& task_, const py::object& stack_,
+                       const py::object& limits_, const py::object& bounds_, double tolerance_, int starts_,
+                       std::uint32_t seed_) {
+             return std::make_shared<PyInverse>(arm.as("arm", "an arm or a Robot"), task_, stack_, limits_, bounds_,
+                                                tolerance_, starts_, seed_);
+           }),
+           py::arg("arm"), py::kw_only(), task, stack, limits, bounds, tolerance, starts, seed)
+      .def("solve", &PyInverse::solve, py::arg("target"), py::arg("start") = none,
+           R"(A posture for a target: a Posture, or Postures for several targets.
+
+target: shape (4, 4) for a pose, (3,) for a position, (x, y, angle) or (2,) for a planar arm [m, rad]; for a stack, a
+dictionary by task name. With a leading axis of K entries, K targets, which are computed on all cores. start: the first
+posture from which the search starts, shape (n,) or (K, n), moved into the ranges; by default, the middle of the ranges.
+A target that is not reached is no error: see Posture.solved.)")
+      .def("solve_all", &PyInverse::solve_all, py::arg("target"), py::arg("start") = none, py::arg("count") = 16,
+           "Up to `count` distinct postures for a target, the nearest to the start first, from all start postures.");
+
+  auto model = py::reinterpret_borrow<py::class_<Model>>(m.attr("Model"));
+  model.def(
+      "inverse",
+      [](const Model& self, const py::object& target, const OptionalArray& start, const std::string& task_,
+         const py::object& stack_, const py::object& limits_, const py::object& bounds_, double tolerance_, int starts_,
+         std::uint32_t seed_) {
+        return solver_of(self, task_, stack_, limits_, bounds_, tolerance_, starts_, seed_)->solve(target, start);
+      },
+      py::arg("target"), py::arg("start") = none, py::kw_only(), task, stack, limits, bounds, tolerance, starts, seed,
+      "A posture for a target: InverseKinematics(arm, ...).solve(target, start).");
+  model.def(
+      "inverse_all",
+      [](const Model& self, const py::object& target, const OptionalArray& start, std::size_t count,
+         const std::string& task_, const py::object& stack_, const py::object& limits_, const py::object& bounds_,
+         double tolerance_, int starts_, std::uint32_t seed_) {
+        return solver_of(self, task_, stack_, limits_, bounds_, tolerance_, starts_, seed_)
+            ->solve_all(target, start, count);
+      },
+      py::arg("target"), py::arg("start") = none, py::arg("count") = 16, py::kw_only(), task, stack, limits, bounds,
+      tolerance, py::arg("starts") = 256, seed,
+      "Distinct postures for a target, the nearest to the start first: InverseKinematics(arm, ...).solve_all(target, "
+      "start, count).");
+}
+
+}  // namespace fpbm::bindings
