@@ -17,7 +17,7 @@ BENCHMARK := /usr/include/benchmark/benchmark.h:libbenchmark-dev
 CXX_SOURCES = $(shell find cpp python tests bench examples web ros2 -name '*.[ch]pp')
 
 .DELETE_ON_ERROR:
-.PHONY: help demo page test homes test-cpp test-python test-docs test-view clang sanitize nightly arm64 arm64-wheel windows macos cross firmware packages fuzz soak motions grasp peers lint \
+.PHONY: help demo page test homes test-cpp test-python test-docs test-view clang sanitize nightly arm64 arm64-wheel windows macos cross firmware packages fuzz soak motions grasp inverse peers lint \
         prose format stubs docs notebooks bench count stalls worst sdist wheel clean
 
 help:
@@ -37,6 +37,7 @@ help:
 	@echo 'make soak             a day of a control loop at 1 kHz'
 	@echo 'make motions          10,000 random motions of stacks of tasks: bounds, and rest'
 	@echo 'make grasp            10,000 motions of a tray in two arms, and a few by Pink, Mink, PlaCo and roboplan'
+	@echo 'make inverse          inverse kinematics: solved poses and times, compared with other libraries'
 	@echo 'make peers            the programs of docs/coming_from.md, in environments of their own'
 	@echo 'make fuzz             look for input that breaks the tracker, for SECONDS=$(SECONDS)'
 	@echo 'make lint             formatting, static analysis, imports, types, stubs, spelling, terms to avoid'
@@ -155,6 +156,15 @@ grasp: $(VENV)/package
 	cmake --build --preset bench --target bench_grasp
 	$(BIN)/python bench/grasp_peers.py
 	build/bench/bench/bench_grasp $(MOTIONS)
+
+# Installs each library into an environment of its own, in build/inverse_peers. Needs a quarter of an hour.
+inverse: $(VENV)/package $(VENV)/test
+	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN)
+	-tools/need.sh /usr/lib/python3/dist-packages/PyKDL$(call SUFFIX,/usr/bin/python3):python3-pykdl
+	cmake --preset bench
+	cmake --build --preset bench --target bench_inverse
+	build/bench/bench/bench_inverse
+	$(BIN)/python bench/inverse_peers.py
 
 # Programs of other libraries, compared with programs of this library. Each library is installed into build/stack_peers.
 peers: $(VENV)/package $(VENV)/test

@@ -123,8 +123,8 @@ def errors(poses: Array, targets: Array) -> Array:
     """The larger error of position [m] and rotation [rad] of each pose."""
     position = np.linalg.norm(poses[:, :3, 3] - targets[:, :3, 3], axis=1)
     chord = np.linalg.norm((poses - targets)[:, :3, :3], axis=(1, 2)) / np.sqrt(8)
-    rotation: Array = 2 * np.arcsin(np.minimum(chord, 1))
-    return np.maximum(position, rotation)
+    larger: Array = np.maximum(position, 2 * np.arcsin(np.minimum(chord, 1)))
+    return larger
 
 
 def row(name: str, given: Problem, answers: dict[str, Array]) -> list[str]:
@@ -181,15 +181,7 @@ def main() -> None:
 
     def run(name: str, solver: str, given: Problem, count: int, cores: int = 1) -> dict[str, Array]:
         out = given.path.with_name(f"{given.name}_answers.npz")
-        command = [
-            environments[name].python,
-            HERE / "inverse_worker.py",
-            solver,
-            given.path,
-            out,
-            str(count),
-            str(cores),
-        ]
+        command = environments[name].python, HERE / "inverse_worker.py", solver, given.path, out, str(count), str(cores)
         call(*command, env=environment, stderr=subprocess.PIPE, timeout=600 + count)
         return dict(np.load(out))
 

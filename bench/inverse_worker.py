@@ -186,7 +186,7 @@ class KdlNewton(KdlLma):
 
 
 class Pinocchio(Solver):
-    """Levenberg-Marquardt method in Python, with kinematics by Pinocchio, and with damping in proportion to the error."""
+    """Levenberg-Marquardt method in Python, with kinematics by Pinocchio. The damping decreases with the error."""
 
     def build(self, problem: Problem) -> None:
         import pinocchio as pin

@@ -7,7 +7,8 @@ namespace fpbm::bindings {
 template <int N>
 std::unique_ptr<PostureSolver<Pose>> postures_in_lanes(const Chain<>& chain, const InverseOptions<>& options,
                                                        const JointLimits<N>& limits) {
-  constexpr int kLanes = static_cast<int>(std::experimental::native_simd<double>::size());
+  // Four lanes, also where eight fit: the first attempt that reaches the target ends the search (make inverse).
+  constexpr int kLanes = 4;
   using Inverse = InverseKinematics<SerialArm<N>, Pose, Lanes<kLanes>>;
   return std::make_unique<PostureSolverOf<Inverse, Pose>>(Inverse(SerialArm<N>(chain), Pose{}, options, limits));
 }

@@ -106,6 +106,8 @@ class InverseKinematics {
     {
       Attempts first(one);
       first.start(true, inside, Scalar(kPatience));
+      const Scalar near = Scalar(kNear) * length_;
+      if (first.now().cost <= near * near) first.start(true, inside, Scalar(kPatienceNear));
       if (!is_finite(start) || !std::isfinite(first.now().cost)) return result;
       result.status = Status::kNotFound;
       while (!one.reached(first.now()) && !first.step()) {
@@ -157,6 +159,10 @@ class InverseKinematics {
 
   /// Steps of an attempt that may be slow. Later attempts have more patience, for targets near singular postures.
   static constexpr int kPatience = 4;
+  /// The attempt from a given start that is nearer than kNear characteristic lengths to the target is patient, since the
+  /// posture on the branch of the start is expected, as for the next waypoint of a path.
+  static constexpr int kPatienceNear = 32;
+  static constexpr double kNear = 0.05;
   static constexpr int kStartsPerPatience = 16;
   /// An attempt starts from the posture nearest to the target of this number of postures.
   static constexpr int kCandidates = 4;

@@ -1,0 +1,156 @@
+"""The command inverse: postures for a pose of the tip."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+import numpy as np
+
+from .._core import PRESETS
+from .._types import Array
+from ..arms import SerialArm
+from ..motion.comparison import columns
+from ..schemes import FPBM
+from .plain import PLACE, Plain, file_errors, import_viser
+
+ROTATIONS = {3: "roll, pitch, yaw about fixed axes [rad]", 4: "quaternion x, y, z, w", 9: "matrix, row by row"}
+NUMBERS = ("--position", "--rotation", "--start")
+
+
+class _Numbers(Plain):
+    """A command whose options for several numbers accept commas and spaces."""
+
+    def parse_args(self, context: click.Context, args: list[str]) -> list[str]:
+        joined: list[str] = []
+        for text in args:
+            follows = len(joined) > 1 and joined[-2] in NUMBERS and _is_number(joined[-1].split(",")[-1])
+            if follows and _is_number(text):
+                joined[-1] += f",{text}"
+            else:
+                joined.append(text)
+        return super().parse_args(context, joined)
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _numbers(name: str, text: str, sizes: Sequence[int]) -> Array:
+    parts = text.replace(" ", ",").split(",")
+    if len(parts) not in sizes or not all(map(_is_number, parts)):
+        wanted = " or ".join(map(str, sizes))
+        raise click.ClickException(f"{name} = {text!r}: must be {wanted} numbers, separated by commas or spaces")
+    return np.array(parts, dtype=float)
+
+
+def rotation_matrix(numbers: Array) -> Array:
+    """Rotation matrix of roll, pitch and yaw, of a quaternion of any length, or of nine entries."""
+    if numbers.size == 9:
+        return numbers.reshape(3, 3)
+    if numbers.size == 4:
+        length = np.linalg.norm(numbers)
+        if not length > 0:
+            raise click.ClickException("--rotation is zero: a quaternion must have a nonzero length")
+        x, y, z, w = numbers / length
+        skew = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+        return np.asarray(np.eye(3) + 2 * w * skew + 2 * skew @ skew)
+    (cr, cp, cy), (sr, sp, sy) = np.cos(numbers), np.sin(numbers)
+    about_x = np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]])
+    about_y = np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]])
+    about_z = np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]])
+    return np.asarray(about_z @ about_y @ about_x)
+
+
+@click.command(
+    cls=_Numbers,
+    short_help="Compute postures for a pose of the tip.",
+    epilog="""\b
+Examples:
+  fpbm-cpp inverse panda --position 0.5 0 0.4 --rotation 1 0 0 0
+  fpbm-cpp inverse my_arm.urdf --tip tool0 --position 0.4,0.1,0.3 --count 4 --view""",
+)
+@click.argument("arm", metavar="ARM", type=PLACE)
+@click.option("--tip", metavar="LINK", help="Tip link of a URDF file.")
+@click.option("--base", metavar="LINK", help="Base link of a URDF file; default: the root.")
+@click.option("--position", metavar="X Y Z", required=True, help="Position of the tip in the base frame [m].")
+@click.option(
+    "--rotation",
+    metavar="NUMBERS",
+    help=f"{'; or '.join(ROTATIONS.values())}. Without a rotation, the orientation of the tip is free.",
+)
+@click.option("--start", metavar="NUMBERS", help="Start posture [rad or m]; default: the middle of the ranges.")
+@click.option("--count", type=click.IntRange(1, 1000), default=8, help="Largest number of postures.")
+@click.option("--starts", type=click.IntRange(1), default=256, help="Largest number of start postures.")
+@click.option("--tolerance", type=float, default=1e-6, help="Largest distance [m] and angle [rad] from the pose.")
+@click.option("--view", is_flag=True, help="Open the first posture in the browser, where the tip can be dragged.")
+def inverse(
+    arm: Path,
+    tip: str | None,
+    base: str | None,
+    position: str,
+    rotation: str | None,
+    start: str | None,
+    count: int,
+    starts: int,
+    tolerance: float,
+    view: bool,
+) -> None:
+    """Compute postures for a pose of the tip, the nearest to the start first.
+
+    ARM is a preset, such as panda or ur5e, or a URDF file with --tip. Prints a row for each posture: the joint
+    positions, the distance from the start, and the distance from the pose. If no posture is found, prints the nearest
+    posture, and the exit status is 1.
+    """
+    try:
+        chain = _arm(arm, tip, base)
+        target: Any = _numbers("--position", position, [3])
+        if rotation is not None:
+            turn = rotation_matrix(_numbers("--rotation", rotation, list(ROTATIONS)))
+            target = np.block([[turn, target[:, None]], [np.zeros((1, 3)), np.ones((1, 1))]])
+        begin = _middle(chain) if start is None else _numbers("--start", start, [chain.dof])
+        task = "position" if rotation is None else "pose"
+        options: dict[str, Any] = {"task": task, "starts": starts, "tolerance": tolerance}
+        found = chain.inverse_all(target, begin, count, **options)
+        shown = found or [chain.inverse(target, begin, **options)]
+    except ValueError as error:
+        raise click.ClickException(str(error)) from None
+    rows = [
+        [str(i), *(f"{x:.4f}" for x in each.q), f"{np.linalg.norm(each.q - begin):.3f}", f"{each.error:.0e}"]
+        for i, each in enumerate(shown, 1)
+    ]
+    slides = any(joint.type == "prismatic" for joint in chain.joints)
+    click.echo(f"Joint positions [{'rad or m' if slides else 'rad'}], distance from the start, error [m or rad]")
+    click.echo(columns(["", *chain.joint_names, "from start", "error"], *rows))
+    if not found:
+        raise click.ClickException(
+            f"no posture found: the posture above is {shown[0].error:.3g} m or rad from the pose; "
+            "the pose may be out of reach"
+        )
+    if view:
+        import_viser()
+        from ..viewer import servo
+
+        scheme = FPBM(0.6, weights=np.ones(chain.dof), k1=10.0, k2=25.0, null_damping=2.0)
+        servo(chain, scheme, shown[0].q, task=task, urdf=None if str(arm) in PRESETS else arm)
+
+
+def _middle(arm: SerialArm) -> Array:
+    """The middle of the ranges; 0 for a joint without ends."""
+    middle = (arm.limits.lower + arm.limits.upper) / 2
+    return np.where(np.isfinite(middle), middle, 0.0)
+
+
+def _arm(arm: Path, tip: str | None, base: str | None) -> SerialArm:
+    if str(arm) in PRESETS:
+        if tip or base:
+            raise click.UsageError(f"{arm} is a preset: --tip and --base are for URDF files.")
+        return SerialArm.preset(str(arm))
+    if tip is None:
+        raise click.UsageError("a URDF file needs --tip LINK.")
+    with file_errors("read", arm):
+        return SerialArm.from_urdf(arm, tip, base)
