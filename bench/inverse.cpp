@@ -1,5 +1,5 @@
-// Times of InverseKinematics for random poses that an arm reaches, for the next waypoint of a path, and for poses out
-// of reach. Each answer is checked by the kinematics of the arm. usage: bench_inverse [number of poses]
+// Times of InverseKinematics for random poses that an arm reaches, for the next waypoint of a path, and for unreachable
+// poses. Each answer is checked by the kinematics of the arm. usage: bench_inverse [number of poses]
 
 #include <algorithm>
 #include <chrono>
@@ -155,7 +155,7 @@ class Arm {
                 waypoint.mean() / (steps.mean() / kSteps), same);
   }
 
-  /// Positions at 1.05 to 2 times the reach.
+  /// Positions at 1.05 to 2 times the largest distance that the arm reaches.
   void print_unreachable() {
     Times unreachable;
     int found_any = 0;
@@ -166,7 +166,7 @@ class Arm {
       found_any += with_default_starts_.solve(target, random()).solved() ? 1 : 0;
       unreachable.add(begin);
     }
-    std::printf("; out of reach: found %d, mean %4.0f us, longest %4.0f us\n", found_any, unreachable.mean(),
+    std::printf("; unreachable: found %d, mean %4.0f us, longest %4.0f us\n", found_any, unreachable.mean(),
                 unreachable.quantile(1.0));
   }
 

@@ -29,8 +29,8 @@ import fpbm_cpp as fp
 
 WORK = HERE.parent / "build" / "inverse_peers"
 ARMS = ("panda", "fr3", "iiwa14", "gen3", "ur5e", "xarm7")
-TOLERANCE = 1e-6  # Of the position [m] and of the rotation [rad].
-ROUND_OFF = 1e-9  # Of angles at the ends of joint ranges [rad].
+TOLERANCE = 1e-6  # Largest error of the position [m] and of the rotation [rad].
+ROUND_OFF = 1e-9  # Largest excess of an angle beyond its range [rad].
 # Packages of each environment. PyKDL does not work with numpy 2.
 PACKAGES = {
     "pin": ("pin",),

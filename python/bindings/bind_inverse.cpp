@@ -316,7 +316,7 @@ class PyInverse {
 
   JointLimits<kDynamic> limits_;
   AnyTargets any_;
-  std::mutex mutex_;  ///< Of the solver: the interpreter's lock is released.
+  std::mutex mutex_;  ///< Locks the solver, because the interpreter's lock is released.
 };
 
 /// The last solver of a model, for repeated calls of inverse() with the same options.
@@ -434,7 +434,7 @@ ParameterError
 target: shape (4, 4) for a pose, (3,) for a position, (x, y, angle) or (2,) for a planar arm [m, rad]; for a stack, a
 dictionary by task name. With a leading axis of K entries, K targets, which are computed on all cores. start: the first
 posture from which the search starts, shape (n,) or (K, n), moved into the ranges; by default, the middle of the ranges.
-A target that is not reached is no error: see Posture.solved.)")
+A target that is not reached raises nothing: see Posture.solved.)")
       .def("solve_all", &PyInverse::solve_all, py::arg("target"), py::arg("start") = none, py::arg("count") = 16,
            "Up to `count` distinct postures for a target, the nearest to the start first, from all start postures.");
 

@@ -12,6 +12,7 @@ import typing
 __all__: list[str] = [
     "Arm",
     "Clearance",
+    "InverseKinematics",
     "Kinematics",
     "Limiter",
     "MAX_DOF",
@@ -20,6 +21,8 @@ __all__: list[str] = [
     "PRESETS",
     "Path",
     "PathFollower",
+    "Posture",
+    "Postures",
     "ROBOT_PRESETS",
     "Robot",
     "SaturatedLevels",
@@ -68,6 +71,39 @@ class Model:
     def bounds(self) -> dict[str, numpy.typing.NDArray[numpy.float64]]:
         """
         Bounds of the joints by name, as in JointLimits, shape (n,) each; infinite if there is no bound.
+        """
+    def inverse(
+        self,
+        target: typing.Any,
+        start: numpy.typing.ArrayLike | None = None,
+        *,
+        task: str = "pose",
+        stack: typing.Any = None,
+        limits: typing.Any = None,
+        bounds: typing.Any = (),
+        tolerance: typing.SupportsFloat | typing.SupportsIndex = 1e-06,
+        starts: typing.SupportsInt | typing.SupportsIndex = 64,
+        seed: typing.SupportsInt | typing.SupportsIndex = 0,
+    ) -> Posture | Postures:
+        """
+        A posture for a target: InverseKinematics(arm, ...).solve(target, start).
+        """
+    def inverse_all(
+        self,
+        target: typing.Any,
+        start: numpy.typing.ArrayLike | None = None,
+        count: typing.SupportsInt | typing.SupportsIndex = 16,
+        *,
+        task: str = "pose",
+        stack: typing.Any = None,
+        limits: typing.Any = None,
+        bounds: typing.Any = (),
+        tolerance: typing.SupportsFloat | typing.SupportsIndex = 1e-06,
+        starts: typing.SupportsInt | typing.SupportsIndex = 256,
+        seed: typing.SupportsInt | typing.SupportsIndex = 0,
+    ) -> list[Posture]:
+        """
+        Distinct postures for a target, the nearest to the start first: InverseKinematics(arm, ...).solve_all(target, start, count).
         """
     @property
     def dof(self) -> int:
@@ -218,6 +254,7 @@ class Status(enum.Enum):
     COARSE = ...
     DAMPED = ...
     NOT_FINITE = ...
+    NOT_FOUND = ...
     OK = ...
     RECOVERING = ...
     SINGULAR = ...
@@ -826,6 +863,130 @@ class Tracker:
     def tip(self) -> typing.Any:
         """
         Tip of the tracker's own state in the base frame [m]; for a stack, the point of each task by name.
+        """
+
+class Posture:
+    """
+    A posture for a target: the result of inverse kinematics.
+    """
+    def __repr__(self) -> str: ...
+    @property
+    def error(self) -> float:
+        """
+        Largest distance [m] or angle [rad] from the target.
+        """
+    @property
+    def q(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The posture, or the nearest posture found [rad], or [m] for a prismatic joint, shape (n,).
+        """
+    @property
+    def solved(self) -> bool:
+        """
+        Whether the target is reached within the tolerance, the ranges and the bounds.
+        """
+    @property
+    def starts(self) -> int:
+        """
+        Number of start postures used.
+        """
+    @property
+    def status(self) -> Status:
+        """
+        OK or NOT_FOUND.
+        """
+
+class Postures:
+    """
+    Postures for K targets.
+    """
+    @property
+    def error(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Largest distance [m] or angle [rad] from each target, shape (K,).
+        """
+    @property
+    def q(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The postures, shape (K, n) [rad or m].
+        """
+    @property
+    def solved(self) -> numpy.typing.NDArray[numpy.bool]:
+        """
+        Whether each target is reached, shape (K,).
+        """
+    @property
+    def starts(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        Number of start postures used for each target, shape (K,).
+        """
+    @property
+    def status(self) -> list[Status]:
+        """
+        OK or NOT_FOUND, for each target.
+        """
+
+class InverseKinematics:
+    """
+    Postures for targets, within the ranges of the joints: inverse kinematics.
+
+    From the given start, and then from start postures that fill the ranges evenly, a search makes damped Newton steps until
+    the target is reached. The result depends on the arguments only.
+
+    Parameters
+    ----------
+    arm : Arm or Robot
+        A Robot needs a stack.
+    task : str
+        Task of the tip: 'position' or 'pose'.
+    stack : Stack, optional
+        Several tasks in strict priority, which replace task. The tasks of the first level, and all tasks except postures,
+        must reach their targets; a PostureTask below the first level is approached as far as the other tasks allow.
+    limits : JointLimits, optional
+        Changes of the limits of the arm, or all limits. Only the ranges are used.
+    bounds : sequence of Clearance and TaskBounds
+        Bounds that the postures keep: obstacles, self-collision, walls, cones.
+    tolerance : float
+        Largest distance [m] and angle [rad] from a target.
+    starts : int
+        Largest number of start postures, the given start included.
+    seed : int
+        Selects the start postures after the given start.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is out of range, or a task or a bound does not suit the arm.
+    """
+    def __init__(
+        self,
+        arm: Model,
+        *,
+        task: str = "pose",
+        stack: typing.Any = None,
+        limits: typing.Any = None,
+        bounds: typing.Any = (),
+        tolerance: typing.SupportsFloat | typing.SupportsIndex = 1e-06,
+        starts: typing.SupportsInt | typing.SupportsIndex = 64,
+        seed: typing.SupportsInt | typing.SupportsIndex = 0,
+    ) -> None: ...
+    def solve(self, target: typing.Any, start: numpy.typing.ArrayLike | None = None) -> Posture | Postures:
+        """
+        A posture for a target: a Posture, or Postures for several targets.
+
+        target: shape (4, 4) for a pose, (3,) for a position, (x, y, angle) or (2,) for a planar arm [m, rad]; for a stack, a
+        dictionary by task name. With a leading axis of K entries, K targets, which are computed on all cores. start: the first
+        posture from which the search starts, shape (n,) or (K, n), moved into the ranges; by default, the middle of the ranges.
+        A target that is not reached raises nothing: see Posture.solved.
+        """
+    def solve_all(
+        self,
+        target: typing.Any,
+        start: numpy.typing.ArrayLike | None = None,
+        count: typing.SupportsInt | typing.SupportsIndex = 16,
+    ) -> list[Posture]:
+        """
+        Up to `count` distinct postures for a target, the nearest to the start first, from all start postures.
         """
 
 def advice(status: Status) -> str:

@@ -64,7 +64,7 @@ void expect_within(const Limits_& limits, const JointVector& q) {
   }
 }
 
-/// Random targets within reach, from random starts.
+/// Random reachable targets, from random starts.
 template <typename Space, typename Inverse, typename Arm>
 void expect_all_found(Inverse inverse, const Arm& arm, int count, double tolerance, std::uint32_t seed) {
   Random random(seed);

@@ -54,7 +54,8 @@ def test_every_reachable_pose_is_found(name: str) -> None:
     for q, target, error in zip(found.q, targets, found.error):
         assert distance(forward(arm, q), target) <= 1e-6
         assert distance(forward(arm, q), target) == pytest.approx(error, abs=1e-9)
-    assert (found.q >= arm.limits.lower).all() and (found.q <= arm.limits.upper).all()
+    assert (found.q >= arm.limits.lower).all()
+    assert (found.q <= arm.limits.upper).all()
 
 
 @given(st.integers(0, 10**6), st.sampled_from(PRESETS), st.sampled_from(["position", "pose"]))
@@ -65,7 +66,9 @@ def test_one_call_equals_a_batch(seed: int, name: str, task: Any) -> None:
     one = arm.inverse(target, start, task=task)
     many = arm.inverse(np.array([target, target]), start, task=task)
     assert (many.q == one.q).all()
-    assert many.error[1] == one.error and many.starts[0] == one.starts and many.solved[0] == one.solved
+    assert many.error[1] == one.error
+    assert many.starts[0] == one.starts
+    assert many.solved[0] == one.solved
     assert (fp.InverseKinematics(arm, task=task).solve(target, start).q == one.q).all()
 
 
@@ -75,7 +78,8 @@ def test_a_near_start_keeps_its_branch(seed: int, name: str) -> None:
     (start,) = random_postures(arm, 1, seed)
     q = np.clip(start + np.random.default_rng(seed).uniform(-0.02, 0.02, arm.dof), arm.limits.lower, arm.limits.upper)
     found = arm.inverse(arm.forward(q), start)
-    assert found.solved and found.starts == 1
+    assert found.solved
+    assert found.starts == 1
 
 
 def test_the_middle_of_the_ranges_is_the_default_start() -> None:
@@ -120,23 +124,28 @@ def test_a_planar_arm() -> None:
     q, start = np.random.default_rng(3).uniform(-2, 2, (2, 4))
     position = arm.forward(q)
     found = arm.inverse(position, start, task="position")
-    assert found.solved and arm.forward(found.q) == pytest.approx(position, abs=1e-6)
+    assert found.solved
+    assert arm.forward(found.q) == pytest.approx(position, abs=1e-6)
     pose = [*position, q.sum()]
     found = arm.inverse(pose, start)
-    assert found.solved and np.cos(found.q.sum() - q.sum()) == pytest.approx(1)
+    assert found.solved
+    assert np.cos(found.q.sum() - q.sum()) == pytest.approx(1)
 
 
 def test_other_ranges() -> None:
     q, start = random_postures(PANDA, 2, 9)
     lower, upper = np.minimum(q, q + 0.1) - 0.05, q + 0.05
     found = PANDA.inverse(PANDA.forward(q), start, limits=fp.JointLimits(lower=lower, upper=upper), starts=256)
-    assert found.solved and (found.q >= lower).all() and (found.q <= upper).all()
+    assert found.solved
+    assert (found.q >= lower).all()
+    assert (found.q <= upper).all()
 
 
 def test_a_start_outside_the_ranges_is_moved_inside() -> None:
     target = PANDA.forward([0.1, -0.3, 0.2, -2.2, 0.1, 2.0, 0.785])
     found = PANDA.inverse(target, np.full(7, 9.0))
-    assert found.solved and (found.q <= PANDA.limits.upper).all()
+    assert found.solved
+    assert (found.q <= PANDA.limits.upper).all()
 
 
 def test_bounds_are_kept() -> None:
@@ -160,9 +169,7 @@ def test_two_arms_reach_their_targets() -> None:
     robot = fp.Robot.preset("two_pandas")
     stack = fp.Stack([fp.PoseTask("right_tip", name="right"), fp.PoseTask("left_tip", name="left")])
     postures = random_postures(robot, 20, 5)
-    targets = {
-        side: np.array([robot.forward(q, f"{side}_tip") for q in postures]) for side in ("right", "left")
-    }
+    targets = {side: np.array([robot.forward(q, f"{side}_tip") for q in postures]) for side in ("right", "left")}
     found = robot.inverse(targets, stack=stack, starts=256)
     assert found.solved.all()
     for q, right, left in zip(found.q, targets["right"], targets["left"]):
@@ -184,7 +191,8 @@ def test_a_posture_below_a_pose_is_approached() -> None:
     q, start, rest = random_postures(PANDA, 3, 8)
     near = PANDA.inverse({"pose": PANDA.forward(q), "posture": q + 1e-3}, start, stack=stack, starts=256)
     far = PANDA.inverse({"pose": PANDA.forward(q), "posture": rest}, start, stack=stack, starts=256)
-    assert near.solved and far.solved
+    assert near.solved
+    assert far.solved
     assert np.linalg.norm(far.q - rest) <= np.linalg.norm(PANDA.inverse(PANDA.forward(q), start).q - rest)
 
 
@@ -253,13 +261,16 @@ def test_a_rotation_with_few_decimals_is_rounded() -> None:
     target = PANDA.forward([0.1, -0.3, 0.2, -2.2, 0.1, 2.0, 0.785])
     rough = np.round(target, 4)
     found = PANDA.inverse(rough)
-    assert found.solved and distance(PANDA.forward(found.q), target) <= 2e-4
+    assert found.solved
+    assert distance(PANDA.forward(found.q), target) <= 2e-4
 
 
 def test_start_posture_follows_the_whole_path() -> None:
     path = fp.Circle(0.1, 5.0).in_plane("yz")
     found = fp.start_posture(PANDA, path, fp.MVN(k=5), x0=[0.5, 0, 0.4], count=8)
-    assert found.run is not None and found.q is not None and not found.fails_at
+    assert found.run is not None
+    assert found.q is not None
+    assert not found.fails_at
     assert (found.run.q[0] == found.q).all()
     assert found.run.max_error() <= 1e-3
     assert PANDA.forward(found.q)[:3, 3] == pytest.approx([0.5, 0, 0.4], abs=1e-6)
@@ -268,10 +279,12 @@ def test_start_posture_follows_the_whole_path() -> None:
 def test_start_posture_tells_where_motions_leave_the_path() -> None:
     path = fp.Circle(0.15, 0.6).in_plane("yz")
     found = fp.start_posture(PANDA, path, fp.MVN(k=5), x0=[0.5, 0, 0.4], count=8)
-    assert found.q is None and found.run is None
+    assert found.q is None
+    assert found.run is None
     assert 1 <= len(found.fails_at) <= 3
     for each in found.fails_at:
-        assert 0 < each.time < 0.6 and each.error > 1e-3
+        assert 0 < each.time < 0.6
+        assert each.error > 1e-3
         assert "leaves the path at" in str(each)
     with pytest.raises(fp.ParameterError, match=r"x0.*no posture found; the nearest is"):
         fp.start_posture(PANDA, path, fp.MVN(k=5), x0=[3, 0, 0])

@@ -116,7 +116,7 @@ def inverse(
         task = "position" if rotation is None else "pose"
         options: dict[str, Any] = {"task": task, "starts": starts, "tolerance": tolerance}
         found = chain.inverse_all(target, begin, count, **options)
-        shown = found or [chain.inverse(target, begin, **options)]
+        shown: list[Any] = found or [chain.inverse(target, begin, **options)]
     except ValueError as error:
         raise click.ClickException(str(error)) from None
     rows = [
@@ -129,7 +129,7 @@ def inverse(
     if not found:
         raise click.ClickException(
             f"no posture found: the posture above is {shown[0].error:.3g} m or rad from the pose; "
-            "the pose may be out of reach"
+            "the pose may be unreachable"
         )
     if view:
         import_viser()

@@ -1,7 +1,7 @@
 """A posture from which an arm can follow a whole path."""
 
-from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -38,8 +38,8 @@ class PathFailure(NamedTuple):
 class StartPosture(NamedTuple):
     """Result of start_posture().
 
-    q and run are the posture and the whole motion from it. If no posture follows the whole path, both are None, and
-    fails_at tells where and why the motions from the best postures leave the path.
+    q and run are the posture and the whole motion from it, or None if no motion follows the whole path. In this case,
+    fails_at has the time and the cause of the failure for the best postures.
     """
 
     q: Array | None
@@ -101,9 +101,18 @@ def start_posture(
     )
     if not found:
         near = arm.inverse(x0, start, task=task, stack=stack, limits=limits, bounds=kept, starts=starts, seed=seed)
-        raise wrong("x0", x0, f": no posture found; the nearest is {near.error:.3g} m or rad away: must be in reach")
+        raise wrong(
+            "x0",
+            x0,
+            f": no posture found; the nearest is {near.error:.3g} m or rad away: must be a point that the arm reaches",
+        )
     q0s = np.array([posture.q for posture in found])
-    options = {"dt": dt, "task": None if stack else task, "stack": stack, "limits": limits or arm.limits}
+    options: dict[str, Any] = {
+        "dt": dt,
+        "task": None if stack else task,
+        "stack": stack,
+        "limits": limits or arm.limits,
+    }
     figures = sweep(arm, path, scheme, q0s, **options)
     errors = np.maximum(figures.max_error, figures.max_orientation_error)[0]
     failed: list[Run] = []
@@ -122,7 +131,7 @@ def deviations(run: Run) -> Array:
     """Distance [m], or angle [rad] if it is larger, from the path at each sample."""
     linear = run.error.shape[1] - (3 if run.error.shape[1] == 6 else 0)
     parts = [np.linalg.norm(run.error[:, :linear], axis=1), np.linalg.norm(run.error[:, linear:], axis=1)]
-    return np.max(parts, axis=0)
+    return np.asarray(np.max(parts, axis=0))
 
 
 def failure(run: Run, tolerance: float) -> PathFailure:

@@ -159,8 +159,8 @@ class InverseKinematics {
 
   /// Steps of an attempt that may be slow. Later attempts have more patience, for targets near singular postures.
   static constexpr int kPatience = 4;
-  /// The attempt from a given start that is nearer than kNear characteristic lengths to the target is patient, since the
-  /// posture on the branch of the start is expected, as for the next waypoint of a path.
+  /// The attempt from a given start that is nearer than kNear characteristic lengths to the target is patient, since
+  /// the posture on the branch of the start is expected, as for the next waypoint of a path.
   static constexpr int kPatienceNear = 32;
   static constexpr double kNear = 0.05;
   static constexpr int kStartsPerPatience = 16;
@@ -325,7 +325,8 @@ class InverseKinematics {
     moved(i) += displacement;
     const auto before = kinematics_at(q);
     constexpr Scalar kRoundOff = Scalar(1e3) * std::numeric_limits<Scalar>::epsilon();
-    return norm(Space::template difference<Scalar>(kinematics_at(moved).tip, before.tip)) <= kRoundOff * (Scalar(1) + before.length);
+    return norm(Space::template difference<Scalar>(kinematics_at(moved).tip, before.tip)) <=
+           kRoundOff * (Scalar(1) + before.length);
   }
 
   Arm arm_;

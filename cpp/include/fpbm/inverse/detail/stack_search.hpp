@@ -59,11 +59,11 @@ class StackSearch {
   struct Trial {
     JointVector q;
     Kinematics<Space, N, Scalar> kinematics;
-    decltype(errors_of(std::make_index_sequence<Stack_::kLevels>{})) errors;  ///< Of each level, in metres.
+    decltype(errors_of(std::make_index_sequence<Stack_::kLevels>{})) errors;  ///< Errors of each level, in metres.
     NearGaps<N, Scalar> gaps;
     /// Σ e² of the tasks of each level that must reach their targets, and of the gaps [m²].
     std::array<Scalar, std::size_t{Stack_::kLevels}> costs;
-    std::array<bool, std::size_t{Stack_::kLevels}> must;  ///< Whether a level has such a task.
+    std::array<bool, std::size_t{Stack_::kLevels}> must;  ///< Whether a level has tasks that must reach their targets.
     Scalar cost;                                          ///< Σ costs [m²]
     Scalar rest;                                          ///< Σ e² of the other tasks [m²].
   };
