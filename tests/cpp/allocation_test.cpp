@@ -12,6 +12,7 @@
 
 #include "fpbm/any/any_scheme.hpp"
 #include "fpbm/core/lanes.hpp"
+#include "fpbm/inverse/inverse_kinematics.hpp"
 #include "fpbm/limits/level_saturation.hpp"
 #include "fpbm/realtime/stack_tracker.hpp"
 #include "fpbm/task/axis_task.hpp"
@@ -264,6 +265,41 @@ TEST(NoAllocation, in_a_stack) {
 }
 
 /// A motion that must stop does not allocate either.
+template <typename Inverse, typename Point, typename Joints>
+void expect_none_in_inverse(Inverse inverse, const Point& near, const Point& far, const Joints& start) {
+  const AllocationWatch watch;
+  const auto found = inverse.solve(near, start);
+  const auto nearest = inverse.solve(far, start);
+  EXPECT_EQ(watch.count().total(), 0);
+  EXPECT_TRUE(found.solved());
+  EXPECT_EQ(nearest.status, Status::kNotFound);
+}
+
+TEST(NoAllocation, in_inverse_kinematics) {
+  const Chain<> chain = presets::panda();
+  const SerialArm<7> arm(chain);
+  const Vector<7> start = panda_ready();
+  Kinematics<Pose, 7> kinematics;
+  arm.kinematics(Vector<7>(start + Vector<7>::Constant(0.4)), kinematics);
+  const Transform<> near = kinematics.tip;
+  Transform<> far = near;
+  far.p(0) = 3.0;
+  expect_none_in_inverse(InverseKinematics(arm, Pose{}), near, far, start);
+  expect_none_in_inverse(InverseKinematics<SerialArm<7>, Pose, Lanes<2>>(arm, Pose{}), near, far, start);
+  expect_none_in_inverse(InverseKinematics(any_arm(chain), Pose{}), near, far, Vector<kOpen>(start));
+
+  const Robot<7> robot(chain);
+  const Stack stack(PoseTask<>{LinkFrame<>(Robot<7>::kTip), TaskGains<>(1.0)}, PostureTask<7>{TaskGains<>(1.0)});
+  const Clearance<7> clearance(chain, presets::capsules::panda(), {{"table", HalfSpace<>{{0.0, 0.0, 1.0}, 0.0}}}, 0.0,
+                               presets::never_collide::panda());
+  const InverseKinematics clear(robot, stack, {}, robot.limits(), Bounds(clearance));
+  auto both = clear.tip(start);
+  std::get<0>(both) = near;
+  auto none = both;
+  std::get<0>(none) = far;
+  expect_none_in_inverse(clear, both, none, start);
+}
+
 TEST(NoAllocation, in_a_rollout_that_fails) {
   const AnyPath<Position<2>> path(Path(Line<2>(Vector<2>(3.0, 0.0)), kDuration));
   const Watched watched = watched_rollout(paper_arm(), path, paper_fpbm(), paper_start().q, [] {});

@@ -37,6 +37,17 @@ BOUND = {
     "rows": "template <typename Next, typename Rows> void rows(const Next&, Rows&) noexcept {}",
     "accepts": "template <typename Stop> bool accepts(const fpbm::State<7>&, const Stop&) noexcept { return true; }",
 }
+GAPS = "template <typename F> void gaps(const fpbm::Vector<7>&, double, const F&) noexcept {}"
+GAPS_PROGRAM = """
+#include <fpbm/fpbm.hpp>
+struct Own {{ {members} }};
+int main() {{
+  const fpbm::Robot<7> robot(fpbm::presets::panda());
+  const fpbm::Stack stack(fpbm::PoseTask<>{{fpbm::LinkFrame<>(fpbm::Robot<7>::kTip), fpbm::TaskGains<>(1.0)}});
+  fpbm::InverseKinematics inverse(robot, stack, {{}}, robot.limits(), fpbm::Bounds(Own{{}}));
+  (void)inverse.solve(inverse.tip(fpbm::Vector<7>{{}}), fpbm::Vector<7>{{}});
+}}
+"""
 BOUND_PROGRAM = """
 #include <fpbm/bound/bounds.hpp>
 struct Own {{ {members} }};
@@ -74,3 +85,11 @@ def test_a_bound_names_its_missing_member(missing: str | None, tmp_path: Path) -
     text = errors(BOUND_PROGRAM.format(members=members), tmp_path)
     assert (missing is None) == (not text), text
     assert missing is None or re.search(rf"a bound needs `.*\b{missing}\b", text), text
+
+
+@pytest.mark.parametrize("missing", [False, True])
+def test_a_bound_of_inverse_kinematics_needs_gaps(missing: bool, tmp_path: Path) -> None:
+    members = " ".join([*BOUND.values(), *([] if missing else [GAPS])])
+    text = errors(GAPS_PROGRAM.format(members=members), tmp_path)
+    assert missing == ("a bound on the postures of InverseKinematics needs `template <typename F> void gaps(" in text)
+    assert missing or not text, text

@@ -53,6 +53,7 @@ using MovesAway = decltype(std::declval<const Bound&>().moves_away());
 ///   rows(next, rows)           adds g·u ≤ b for the next motion (NextMotion), at most kRows rows
 ///   accepts(from, stop)        whether the tick and the stop after the tick, from the state `from`, keep the bound
 ///                              (Stop); true for a bound without a certificate
+///   gaps(q, range, f)          for InverseKinematics only: calls f(gap, gradient) for each gap below the range in q
 ///
 /// rows() and accepts() are noexcept, and rows() is called first in each tick. All state of a bound is allocated at
 /// construction.
