@@ -364,3 +364,31 @@ def test_simultaneous_threads_are_safe():
     for thread in threads:
         thread.join()
     assert not errors
+
+
+def differences(q, others):
+    """Largest difference of a joint from each of the other postures, modulo whole turns."""
+    return [np.max(np.abs(np.angle(np.exp(1j * (q - other))))) for other in others]
+
+
+def test_another_posture_has_the_same_tip():
+    arm = fp.SerialArm.preset("ur5e")
+    loop = ServoLoop(arm, fp.MVN(k=5), [0.3, -1.1, 1.4, -0.9, 1.2, 0.4], task="pose", clock=Clock())
+    start, seen = arm.forward(loop.q), [loop.q]
+    for _ in range(7):
+        assert loop.change_posture()
+        assert arm.forward(loop.q) == pytest.approx(start, abs=1e-5)
+        assert min(differences(loop.q, seen)) > 0.5  # All eight branches, each once.
+        seen.append(loop.q)
+    assert loop.change_posture()  # A branch of before.
+    assert min(differences(loop.q, seen)) < 1e-3
+    loop.restart()
+    assert (loop.q == seen[0]).all()
+
+
+def test_a_planar_arm_of_two_joints_has_one_other_posture():
+    loop = ServoLoop(
+        fp.PlanarArm([1, 1]), fp.MVN(k=5), [0.3, 1.0], limits=fp.JointLimits(acceleration=10), clock=Clock()
+    )
+    assert loop.change_posture()
+    assert loop.q == pytest.approx([1.3, -1.0], abs=1e-5)

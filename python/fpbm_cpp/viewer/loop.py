@@ -26,6 +26,8 @@ from .strip import Strip
 from .targets import Targets
 
 MOST = 0.1  # Largest simulated time per call [s]; the remaining elapsed time is dropped.
+POSTURES = 64  # Number of postures from which change_posture() selects one.
+FAR = 0.5  # Least difference of a joint in another posture [rad or m].
 SAID = 0.25  # status is the worst status of the last SAID seconds, because a tick is too short to read.
 
 
@@ -71,6 +73,7 @@ class ServoLoop:
         self._tracker.tick(self._targets.references)  # Rejects an invalid filter.
         self._said: deque[Status] = deque(maxlen=max(round(SAID / dt), 1))
         self._tick: Tick | None = None
+        self._seen: list[Array] = []  # Postures before each change.
         self._last: float = 0.0  # Time of the last ticks.
         self.restart()
 
@@ -123,6 +126,26 @@ class ServoLoop:
             self._obstacles.restart()
             self._tracker = self._new_tracker(self._scheme, self._q0)
             self._begin()
+
+    def change_posture(self) -> bool:
+        """Put the arm at rest into another posture with the same points of all tasks; the nearest that is new.
+
+        Returns whether another posture was found. After the last one, the first posture is next.
+        """
+        with self._lock:
+            points, here = self._tracker.tip, self._tracker.q
+            how: dict[str, Any] = {"task": self._task, "stack": self.stack, "limits": self.limits}
+            found = self.arm.inverse_all(points, here, POSTURES, bounds=self._bounds, **how)
+            far = [each.q for each in found if self._is_far(each.q, [here])]
+            unseen = [q for q in far if self._is_far(q, self._seen)]
+            if not far:
+                return False
+            self._seen = [*self._seen, here] if unseen else [here]
+            self._tracker = self._new_tracker(self._scheme, (unseen or far)[0])
+            self._said.clear()
+            if self._stopped:
+                self._tracker.stop()
+            return True
 
     @property
     def scheme(self) -> Scheme:
@@ -213,6 +236,16 @@ class ServoLoop:
             qdd0=qdd0,
         )
 
+    def _is_far(self, q: Array, others: Sequence[Array]) -> bool:
+        """Whether a posture differs from others by more than whole turns of joints."""
+        turns = self.limits.upper - self.limits.lower >= 2 * np.pi
+        for other in others:
+            difference = np.abs(q - other)
+            wrapped = np.abs(difference - 2 * np.pi * np.round(difference / (2 * np.pi)))
+            if np.max(np.where(turns, wrapped, difference)) <= FAR:
+                return False
+        return True
+
     def _one_tick(self) -> Tick:
         self._obstacles.step(self._tracker)
         return self._tracker.tick(self._targets.references)
@@ -224,6 +257,7 @@ class ServoLoop:
     def _begin(self) -> None:
         self._stopped = False
         self._tick = None
+        self._seen = []
         self._said.clear()
         levels = 1 if self.stack is None else len(self.stack.levels)
         self.strip: Strip = Strip(self.limits, self.dt, levels)

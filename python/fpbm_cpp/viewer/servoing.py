@@ -56,11 +56,13 @@ class Servo(Page):
             self._readout = LiveReadout(gui)
             self._button = gui.add_button("stop", color="red", icon=Icon.HAND_STOP, hint="Stop the arm, or continue")
             start = gui.add_button("back to start", color="gray", hint="Move arm and handles to their start")
+            other = gui.add_button("other posture", color="gray", hint="Jump to another posture with the same tip")
             self._chart = StripChart(gui, self._loop)
             self._controls = Controls(gui, arm, scheme, self._on_change, gains=self._loop.stack is None)
             self._scene = LiveScene(self._server, self._loop, meshes)
             self._button.on_click(lambda _: self.resume() if self._loop.stopped else self.stop())
             start.on_click(lambda _: self.restart())
+            other.on_click(lambda _: self.change_posture())
             self._draw()
         self._closed = threading.Event()
         self._clock = threading.Thread(target=self._run, name="fpbm_cpp servo", daemon=True)
@@ -132,6 +134,11 @@ class Servo(Page):
         with self._lock:
             self._loop.resume()
             self._button.label, self._button.color, self._button.icon = "stop", "red", Icon.HAND_STOP
+
+    def change_posture(self) -> bool:
+        """Put the arm at rest into another posture with the same points of all tasks. Returns whether there is one."""
+        with self._lock:
+            return self._loop.change_posture()
 
     def restart(self) -> None:
         """Restart with the arm at rest in its first posture, and the handles on the first targets."""
