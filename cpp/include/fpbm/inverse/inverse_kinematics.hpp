@@ -9,11 +9,13 @@
 #include <utility>
 
 #include "fpbm/core/detail/lane_access.hpp"
+#include "fpbm/core/detail/parts.hpp"
 #include "fpbm/core/detail/validation.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/inverse/detail/attempts.hpp"
 #include "fpbm/inverse/detail/joint_ranges.hpp"
 #include "fpbm/inverse/detail/stack_search.hpp"
+#include "fpbm/inverse/detail/start_search.hpp"
 #include "fpbm/inverse/detail/tip_search.hpp"
 
 namespace fpbm {
@@ -37,16 +39,6 @@ struct Posture {
   [[nodiscard]] bool solved() const noexcept { return status == Status::kOk; }
 };
 
-/// Postures for targets: inverse kinematics within the ranges of the joints (docs/inverse.md).
-///
-/// From the given start, and then from start postures that fill the ranges evenly, a search makes steps of Levenberg
-/// and Marquardt, until the target is reached. Most attempts that would not reach the target are given up after few
-/// steps. The result depends on the arguments only. Memory and time are bounded; there is no heap allocation.
-///
-///   InverseKinematics inverse(arm, Pose{});                 // the tip of an arm
-///   InverseKinematics inverse(robot, stack, {}, limits, bounds);  // a stack of tasks, within bounds
-///
-/// Batch: Lanes<K> of fpbm/core/lanes.hpp for attempts from K start postures in parallel, for the tip of an arm.
 /// The arm with another Scalar, or the arm itself for an equal Scalar.
 template <typename Other, typename Arm>
 [[nodiscard]] auto arm_in(const Arm& arm) {
@@ -57,9 +49,20 @@ template <typename Other, typename Arm>
   }
 }
 
+/// StackSearch for a stack of tasks, or TipSearch for the tip of an arm.
 template <typename Arm, typename Space, typename Bounds_>
 using SearchOf = std::conditional_t<kIsProduct<Space>, StackSearch<Arm, Bounds_>, TipSearch<Arm, Space>>;
 
+/// Postures for targets: inverse kinematics within the ranges of the joints (docs/inverse.md).
+///
+/// From the given start, and then from start postures that fill the ranges evenly, a search makes steps of Levenberg
+/// and Marquardt, until the target is reached. Most attempts that would not reach the target are given up after few
+/// steps. The result depends on the arguments only. Memory and time are bounded; there is no heap allocation.
+///
+///   InverseKinematics inverse(arm, Pose{});                 // the tip of an arm
+///   InverseKinematics inverse(robot, stack, {}, limits, bounds);  // a stack of tasks, within bounds
+///
+/// Batch: Lanes<K> of fpbm/core/lanes.hpp for attempts from K start postures in parallel, for the tip of an arm.
 template <typename Arm, typename Space, typename Batch = typename Arm::Scalar, typename Bounds_ = Bounds<>>
 class InverseKinematics {
  public:
@@ -98,33 +101,36 @@ class InverseKinematics {
   /// Calls found(posture) for the solution of each attempt, until found() returns true or all starts are used. Returns
   /// the last solution, or if there is none, the nearest posture found.
   template <typename Found>
-  Result search(const Point& target, const JointVector& start, Found&& found) noexcept {
+  Result search(const Point& target, const JointVector& start, const Found& found) noexcept {
     const One one = make_search<One>(arm_, target);
-    typename One::Trial best;
     const JointVector inside = ranges_.clamp(start);
-    Result result{start, Status::kNotFinite, std::numeric_limits<Scalar>::infinity(), 1};
-    {
-      Attempts first(one);
-      first.start(true, inside, Scalar(kPatience));
-      const Scalar near = Scalar(kNear) * length_;
-      if (first.now().cost <= near * near) first.start(true, inside, Scalar(kPatienceNear));
-      if (!is_finite(start) || !std::isfinite(first.now().cost)) return result;
-      result.status = Status::kNotFound;
-      while (!one.reached(first.now()) && !first.step()) {
-      }
-      best = first.now();
-      if (one.reached(best)) {
-        first.settle();
-        result = solution(first.now().q, target, start, 1);
-        if (found(result)) return result;
-      }
+    Attempts first(one);
+    first.start(true, inside, Scalar(kPatience));
+    if (!is_finite(start) || !std::isfinite(first.now().cost)) {
+      return {start, Status::kNotFinite, std::numeric_limits<Scalar>::infinity(), 1};
     }
-    search_from_starts(one, target, inside, best, result, found);
-    if (!result.solved()) {
-      result.q = ranges_.near(best.q, start);
-      result.error = error_of(result.q, target);
+    const Scalar near = Scalar(kNear) * length_;
+    if (first.now().cost <= near * near) first.start(true, inside, Scalar(kPatienceNear));
+    while (!one.reached(first.now()) && !first.step()) {
     }
-    return result;
+    Result result{start, Status::kNotFound, Scalar(0), 1};
+    typename One::Trial best = first.now();
+    if (one.reached(best)) {
+      first.settle();
+      result = solution(first.now().q, target, start, 1);
+      if (found(result)) return result;
+    }
+    const Many many = make_search<Many>(batch_, target);
+    StartSearch<Many> starts(many, ranges_, inside, Scalar(options_.seed), 1, options_.starts);
+    starts.run(
+        [&](const JointVector& q) noexcept {
+          result = solution(q, target, start, starts.used());
+          return found(result);
+        },
+        [&](const typename Many::Trial& trial, std::size_t lane) noexcept { keep_better(one, trial, lane, best); });
+    if (result.solved()) return result;
+    const JointVector q = ranges_.near(best.q, start);
+    return {q, Status::kNotFound, error_of(q, target), starts.used()};
   }
 
  private:
@@ -149,23 +155,21 @@ class InverseKinematics {
                          "at most upper = ", ranges_.upper(i));
       }
     }
-    examine_joints();
+    length_ = kinematics_at(filled<JointVector>(arm_.dof())).length;
+    ranges_.examine([&](const JointVector& q, const JointVector& moved) noexcept {
+      const auto change = Space::template difference<Scalar>(kinematics_at(moved).tip, kinematics_at(q).tip);
+      return norm(change) / (Scalar(1) + length_);
+    });
   }
 
   using One = SearchOf<Arm, Space, Bounds_>;
   using BatchArm = decltype(arm_in<Batch>(std::declval<const Arm&>()));
   using Many = SearchOf<BatchArm, Space, Bounds_>;
-  static constexpr std::size_t kLanes = sizeof(Batch) / sizeof(Scalar);
 
-  /// Steps of an attempt that may be slow. Later attempts have more patience, for targets near singular postures.
-  static constexpr int kPatience = 4;
   /// The attempt from a given start that is nearer than kNear characteristic lengths to the target is patient, since
   /// the posture on the branch of the start is expected, as for the next waypoint of a path.
   static constexpr int kPatienceNear = 32;
   static constexpr double kNear = 0.05;
-  static constexpr int kStartsPerPatience = 16;
-  /// An attempt starts from the posture nearest to the target of this number of postures.
-  static constexpr int kCandidates = 4;
 
   template <typename Search, typename Arm_>
   [[nodiscard]] Search make_search(const Arm_& arm, const Point& target) noexcept {
@@ -179,68 +183,12 @@ class InverseKinematics {
     } else {
       typename Space::template Point<In> targets;
       if constexpr (kInLanes<In>) {
-        for (std::size_t lane = 0; lane < kLanes; ++lane) set_lane(targets, lane, target);
+        for (std::size_t lane = 0; lane < kLanesOf<In>; ++lane) set_lane(targets, lane, target);
       } else {
         targets = target;
       }
       return Search(arm, In(length_), cast(ranges_.lower), cast(ranges_.upper), targets, In(options_.tolerance));
     }
-  }
-
-  /// Attempts from start postures that fill the ranges. Sets `best` to the nearest posture that gives up, and `result`
-  /// to the last solution.
-  template <typename Found>
-  void search_from_starts(const One& one, const Point& target, const JointVector& start, typename One::Trial& best,
-                          Result& result, Found& found) noexcept {
-    const Many many = make_search<Many>(batch_, target);
-    const SpreadPostures<N, Batch> spread(ranges_, start, static_cast<Scalar>(options_.seed));
-    Attempts attempts(many);
-    Mask<Batch> active(false);
-    Batch number = lane_numbers();
-    for (;;) {
-      Mask<Batch> starting(false);
-      each_lane(!active, [&](std::size_t lane) noexcept {
-        if (result.starts == options_.starts) return;
-        ++result.starts;
-        set(starting, lane);
-        set(active, lane);
-      });
-      if (none_of(active)) return;
-      if (any_of(starting)) {
-        const int patience = kPatience + result.starts / kStartsPerPatience;
-        attempts.start(starting, nearest_candidate(many, spread, number), Batch(Scalar(patience)));
-        number += Batch(Scalar(kLanes));
-      }
-      const Mask<Batch> gives_up = active && attempts.step();
-      const Mask<Batch> reached = active && many.reached(attempts.now());
-      active = active && !(gives_up || reached);
-      bool is_done = false;
-      each_lane(reached, [&](std::size_t lane) noexcept {
-        if (is_done) return;
-        if constexpr (!kInLanes<Batch>) attempts.settle();
-        result = solution(lane_of_posture(attempts.now().q, lane), target, start, result.starts);
-        is_done = found(result);
-      });
-      if (is_done) return;
-      each_lane(gives_up && !reached, [&](std::size_t lane) noexcept { keep_better(one, attempts.now(), lane, best); });
-    }
-  }
-
-  /// The posture nearest to the target of kCandidates postures, in each lane.
-  [[nodiscard]] static typename Many::JointVector nearest_candidate(const Many& many,
-                                                                    const SpreadPostures<N, Batch>& spread,
-                                                                    const Batch& number) noexcept {
-    const Batch first = Batch(Scalar(kCandidates)) * number;
-    auto best = spread(first);
-    Batch least = many.cost(best);
-    for (int i = 1; i < kCandidates; ++i) {
-      const auto q = spread(first + Batch(Scalar(i)));
-      const Batch cost = many.cost(q);
-      const Mask<Batch> better = cost < least;
-      least = select(better, cost, least);
-      best = entrywise(q, [&](Eigen::Index j) { return select(better, q.coeff(j), best.coeff(j)); });
-    }
-    return best;
   }
 
   static void keep_better(const One& one, const typename Many::Trial& now, std::size_t lane,
@@ -266,67 +214,6 @@ class InverseKinematics {
   }
   [[nodiscard]] Scalar error_of(const JointVector& q, const Point& target) const noexcept {
     return One::largest_error(kinematics_at(q), target);
-  }
-
-  [[nodiscard]] static Batch lane_numbers() noexcept {
-    if constexpr (kInLanes<Batch>) {
-      return Batch([](auto lane) { return Scalar(lane); });
-    } else {
-      return Batch(0);
-    }
-  }
-  template <typename F>
-  static void each_lane(const Mask<Batch>& lanes, F&& f) noexcept {
-    if constexpr (kInLanes<Batch>) {
-      if (none_of(lanes)) return;
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        if (lanes[lane]) f(lane);
-      }
-    } else {
-      if (lanes) f(std::size_t(0));
-    }
-  }
-  static void set(Mask<Batch>& lanes, [[maybe_unused]] std::size_t lane) noexcept {
-    if constexpr (kInLanes<Batch>) {
-      lanes[lane] = true;
-    } else {
-      lanes = true;
-    }
-  }
-  [[nodiscard]] static JointVector lane_of_posture(const typename Many::JointVector& q,
-                                                   [[maybe_unused]] std::size_t lane) noexcept {
-    if constexpr (kInLanes<Batch>) {
-      return lane_of(q, lane);
-    } else {
-      return q;
-    }
-  }
-
-  /// Finds the characteristic length, and the periodic and idle joints by the points of the tasks in a few postures.
-  void examine_joints() noexcept {
-    const auto origin = filled<JointVector>(ranges_.lower.size());
-    const SpreadPostures<N, Scalar> spread(ranges_, origin, Scalar(0));
-    length_ = kinematics_at(spread(Scalar(1))).length;
-    for (Eigen::Index i = 0; i < origin.size(); ++i) {
-      bool periodic = true;
-      bool idle = true;
-      for (int k = 1; k <= 3; ++k) {
-        const JointVector q = spread(Scalar(k));
-        periodic = periodic && is_equal(q, i, static_cast<Scalar>(kTwoPi));
-        idle = idle && is_equal(q, i, Scalar(1));
-      }
-      if (periodic) ranges_.periodic |= joint_bit(i);
-      if (idle) ranges_.idle |= joint_bit(i);
-    }
-  }
-  /// Whether a displacement of joint i changes no task, up to round-off.
-  [[nodiscard]] bool is_equal(const JointVector& q, Eigen::Index i, Scalar displacement) const noexcept {
-    JointVector moved = q;
-    moved(i) += displacement;
-    const auto before = kinematics_at(q);
-    constexpr Scalar kRoundOff = Scalar(1e3) * std::numeric_limits<Scalar>::epsilon();
-    return norm(Space::template difference<Scalar>(kinematics_at(moved).tip, before.tip)) <=
-           kRoundOff * (Scalar(1) + before.length);
   }
 
   Arm arm_;

@@ -6,6 +6,9 @@
 
 namespace fpbm {
 
+/// Number of steps of an attempt that may be slow before the attempt gives up.
+inline constexpr int kPatience = 4;
+
 /// Attempts of a search from several postures, one for each lane of the Scalar.
 ///
 /// A step that makes the posture better is taken, and λ decreases. Otherwise, the

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "fpbm/core/detail/mask.hpp"
 #include "fpbm/core/types.hpp"
@@ -19,6 +20,11 @@ struct JointRanges {
   Vector<N, Scalar> upper;
   JointBits periodic = 0;  ///< Bits of the joints whose turn by 2π changes no task.
   JointBits idle = 0;      ///< Bits of the joints that move no task.
+
+  /// Finds periodic and idle joints: joints whose displacement changes no point of the tasks, up to round-off, in a few
+  /// postures. difference(q, moved): distance of the points in two postures, in characteristic lengths and radians.
+  template <typename Difference>
+  void examine(const Difference& difference) noexcept;
 
   [[nodiscard]] Vector<N, Scalar> clamp(const Vector<N, Scalar>& q) const noexcept {
     return entrywise(q, [&](Eigen::Index i) { return std::min(std::max(q.coeff(i), lower.coeff(i)), upper.coeff(i)); });
@@ -64,6 +70,22 @@ class SpreadPostures {
     }
   }
 
+  /// The posture nearest to the target of kCandidates postures, the group with number k. Search: TipSearch.
+  template <typename Search>
+  [[nodiscard]] Vector<N, Scalar> nearest(const Search& search, const Scalar& k) const noexcept {
+    const Scalar first = Scalar(Number<Scalar>(kCandidates)) * k;
+    Vector<N, Scalar> best = (*this)(first);
+    Scalar least = search.cost(best);
+    for (int i = 1; i < kCandidates; ++i) {
+      const Vector<N, Scalar> q = (*this)(first + Scalar(Number<Scalar>(i)));
+      const Scalar cost = search.cost(q);
+      const Mask<Scalar> better = cost < least;
+      least = select(better, cost, least);
+      best = entrywise(q, [&](Eigen::Index j) { return select(better, q.coeff(j), best.coeff(j)); });
+    }
+    return best;
+  }
+
   /// Posture k.
   [[nodiscard]] Vector<N, Scalar> operator()(const Scalar& k) const noexcept {
     using std::floor;
@@ -74,10 +96,34 @@ class SpreadPostures {
   }
 
  private:
+  static constexpr int kCandidates = 4;
+
   Vector<N, Scalar> from_;
   Vector<N, Scalar> width_;
   Vector<N, Scalar> step_;
   Scalar offset_;
 };
+
+template <int N, typename Scalar>
+template <typename Difference>
+void JointRanges<N, Scalar>::examine(const Difference& difference) noexcept {
+  constexpr int kPostures = 3;
+  constexpr Scalar kRoundOff = Scalar(1e3) * std::numeric_limits<Scalar>::epsilon();
+  const auto origin = filled<Vector<N, Scalar>>(lower.size());
+  const SpreadPostures<N, Scalar> spread(*this, origin, Scalar(0));
+  for (Eigen::Index i = 0; i < origin.size(); ++i) {
+    const auto changes_nothing = [&](Scalar displacement) noexcept {
+      for (int k = 1; k <= kPostures; ++k) {
+        const Vector<N, Scalar> q = spread(Scalar(k));
+        Vector<N, Scalar> moved = q;
+        moved.coeffRef(i) += displacement;
+        if (!(difference(q, moved) <= kRoundOff)) return false;
+      }
+      return true;
+    };
+    if (changes_nothing(static_cast<Scalar>(kTwoPi))) periodic |= joint_bit(i);
+    if (changes_nothing(Scalar(1))) idle |= joint_bit(i);
+  }
+}
 
 }  // namespace fpbm

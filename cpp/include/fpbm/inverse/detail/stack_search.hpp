@@ -9,33 +9,12 @@
 #include <utility>
 
 #include "fpbm/core/types.hpp"
+#include "fpbm/inverse/detail/level_step.hpp"
 #include "fpbm/inverse/detail/near_gaps.hpp"
-#include "fpbm/linalg/detail/cholesky.hpp"
-#include "fpbm/linalg/detail/level_space.hpp"
-#include "fpbm/linalg/detail/lower_gram.hpp"
-#include "fpbm/linalg/detail/product.hpp"
 #include "fpbm/linalg/detail/sums.hpp"
 #include "fpbm/task/detail/robot_tasks.hpp"
 
 namespace fpbm {
-
-/// Solves a level with the damping μ: w = Lᵀ(L Lᵀ + μ I)⁻¹ r, for LevelSpace::add().
-template <typename Scalar>
-struct SearchDamping {
-  Scalar damping;
-
-  template <int M>
-  [[nodiscard]] bool operator()(const Matrix<M, M, Scalar>& L, Vector<M, Scalar>& r, Eigen::Index) const noexcept {
-    Matrix<M, M, Scalar> gram = lower_gram(L);
-    for (Eigen::Index i = 0; i < gram.rows(); ++i) gram.coeffRef(i, i) += damping;
-    Cholesky<M, Scalar> factor;
-    if (factor.factor(gram) != Status::kOk) return false;
-    r = transpose_times(L, factor.solve(r));
-    return true;
-  }
-  /// Every diagonal level is damped.
-  [[nodiscard]] static bool loses(Scalar) noexcept { return true; }
-};
 
 /// Search of postures for a stack of tasks, within bounds (docs/inverse.md, Several tasks). Has the members of
 /// TipSearch. Arm: RobotTasks.
@@ -205,77 +184,23 @@ class StackSearch {
   }
 
   [[nodiscard]] JointVector resolve(const Trial& now, Scalar lambda, JointBits held, bool all) const noexcept {
-    LevelSpace<N, Scalar> space(now.q.size());
-    auto step = filled<JointVector>(now.q.size());
-    resolve(now, lambda, held, all, space, step, std::make_index_sequence<Stack_::kLevels>{});
-    return step;
+    return resolve(now, lambda, held, all, std::make_index_sequence<Stack_::kLevels>{});
   }
   template <std::size_t... k>
-  void resolve(const Trial& now, Scalar lambda, JointBits held, bool all, LevelSpace<N, Scalar>& space,
-               JointVector& step, std::index_sequence<k...>) const noexcept {
+  [[nodiscard]] JointVector resolve(const Trial& now, Scalar lambda, JointBits held, bool all,
+                                    std::index_sequence<k...>) const noexcept {
+    LevelStep<N, Scalar> step(now.q.size(), held);
     const auto add = [&](auto level) noexcept {
       constexpr auto kLevel = decltype(level)::value;
       const auto& rows = std::get<kLevel>(now.kinematics.levels);
-      if ((kLevel > 0 && !now.kinematics.enabled[kLevel]) || rows.rows() == 0) return;
-      if (space.rank() == space.size() || !(all || now.must[kLevel])) return;
-      const Scalar cost = squared_norm(std::get<kLevel>(now.errors)) + (kLevel == 0 ? now.gaps.cost : Scalar(0));
-      SearchDamping<Scalar> damping{lambda * cost + kRegular * length() * length()};
       const auto& e = std::get<kLevel>(now.errors);
-      if (kLevel == 0 && now.gaps.count > 0) {
-        add_level(with_gaps(now, matrix_of(rows)), with_gaps(now, e), held, damping, space, step);
-      } else {
-        add_level(matrix_of(rows), in_order(rows, e), held, damping, space, step);
-      }
+      if ((kLevel > 0 && !now.kinematics.enabled[kLevel]) || rows.rows() == 0 || !(all || now.must[kLevel])) return;
+      const Scalar cost = squared_norm(e) + (kLevel == 0 ? now.gaps.cost : Scalar(0));
+      const Scalar damping = lambda * cost + kRegular * length_ * length_;
+      kLevel == 0 && now.gaps.count > 0 ? step.add(rows, e, now.gaps, damping) : step.add(rows, e, damping);
     };
     (add(std::integral_constant<std::size_t, k>{}), ...);
-  }
-
-  template <int M>
-  void add_level(Matrix<M, N, Scalar> J, Vector<M, Scalar> r, JointBits held, SearchDamping<Scalar>& damping,
-                 LevelSpace<N, Scalar>& space, JointVector& step) const noexcept {
-    const Vector<M, Scalar> made = product(J, step);
-    for (Eigen::Index i = 0; i < r.size(); ++i) r.coeffRef(i) -= made.coeff(i);
-    each_joint(held, [&](Eigen::Index j) noexcept {
-      for (Eigen::Index i = 0; i < J.rows(); ++i) J.coeffRef(i, j) = Scalar(0);
-    });
-    step += space.add(J, r, damping);
-  }
-
-  template <int M>
-  [[nodiscard]] static const Matrix<M, N, Scalar>& matrix_of(const LevelRows<M, N, Scalar>& rows) noexcept {
-    return rows.J;
-  }
-  [[nodiscard]] static Matrix<N, N, Scalar> matrix_of(const PostureRows<N, Scalar>&) noexcept {
-    return identity<Matrix<N, N, Scalar>>();
-  }
-  template <int M>
-  [[nodiscard]] static const Vector<M, Scalar>& in_order(const LevelRows<M, N, Scalar>&,
-                                                         const Vector<M, Scalar>& e) noexcept {
-    return e;
-  }
-  [[nodiscard]] static JointVector in_order(const PostureRows<N, Scalar>& rows, const JointVector& e) noexcept {
-    JointVector sorted = e;
-    for (Eigen::Index i = 0; i < e.size(); ++i) sorted(rows.joints[static_cast<std::size_t>(i)]) = e(i);
-    return sorted;
-  }
-
-  /// The rows of the first level above the rows of the gaps.
-  template <int M>
-  [[nodiscard]] static Matrix<Eigen::Dynamic, N, Scalar> with_gaps(const Trial& now,
-                                                                   const Matrix<M, N, Scalar>& J) noexcept {
-    Matrix<Eigen::Dynamic, N, Scalar> all(J.rows() + now.gaps.count, J.cols());
-    for (Eigen::Index j = 0; j < J.cols(); ++j) {
-      for (Eigen::Index i = 0; i < J.rows(); ++i) all.coeffRef(i, j) = J.coeff(i, j);
-      for (Eigen::Index i = 0; i < now.gaps.count; ++i) all.coeffRef(J.rows() + i, j) = now.gaps.gradients.coeff(j, i);
-    }
-    return all;
-  }
-  template <int M>
-  [[nodiscard]] static Vector<Eigen::Dynamic, Scalar> with_gaps(const Trial& now, const Vector<M, Scalar>& e) noexcept {
-    Vector<Eigen::Dynamic, Scalar> all(e.size() + now.gaps.count);
-    for (Eigen::Index i = 0; i < e.size(); ++i) all.coeffRef(i) = e.coeff(i);
-    for (Eigen::Index i = 0; i < now.gaps.count; ++i) all.coeffRef(e.size() + i) = now.gaps.beyond.coeff(i);
-    return all;
+    return step.value();
   }
 
   const Arm& arm_;
