@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <string>
 #include <utility>
@@ -292,6 +293,7 @@ TEST(InverseOfStacks, approaches_a_posture_below_a_pose) {
   const RobotTasks tasks(robot, stack);
   InverseKinematics inverse(robot, stack, patient());
   Random random(13);
+  double steepest = 0.0;
   for (int k = 0; k < trials(50); ++k) {
     const Vector<7> start = random_posture(random, robot.limits());
     const Vector<7> rest = random_posture(random, robot.limits());
@@ -309,8 +311,10 @@ TEST(InverseOfStacks, approaches_a_posture_below_a_pose) {
     const Vector<7> moved = found.q + step;
     const bool at_end =
         ((moved - robot.limits().upper).array() > 0.0).any() || ((robot.limits().lower - moved).array() > 0.0).any();
-    EXPECT_TRUE(at_end || std::abs(slope) < 0.03 * (rest - found.q).norm()) << k << ": " << slope;
+    if (!at_end) steepest = std::max(steepest, std::abs(slope) / (rest - found.q).norm());
   }
+  EXPECT_LE(steepest, 0.03);
+  std::printf("slope of the distance along the null space: at most %.3f\n", steepest);
 }
 
 /// The first level is reached exactly, although the second contradicts it.

@@ -6,7 +6,8 @@
 
 namespace fpbm {
 
-/// Number of steps of an attempt that may be slow before the attempt gives up.
+/// Number of steps of an attempt that may be slow before the attempt gives up. Range: 3 to 5, as for the values of
+/// Attempts.
 inline constexpr int kPatience = 4;
 
 /// Attempts of a search from several postures, one for each lane of the Scalar.
@@ -79,14 +80,20 @@ class Attempts {
   }
 
  private:
-  // make inverse prints the number of solved poses and the time for each value.
-  static constexpr double kFirstDamping = 0.1;
-  static constexpr double kLeastDamping = 1e-5;
-  static constexpr double kLess = 0.4;
-  static constexpr double kMore = 12.0;
-  static constexpr double kSlow = 0.7;
+  // The values are from a random search for the least mean effort over 3,000 reachable poses of each of six arms
+  // (`make inverse` prints the mean time). Within the ranges, the effort changes by at most 3 %, and all but 2 of
+  // 18,000 poses are found.
+  static constexpr double kFirstDamping = 0.1;   ///< λ of the first step. Range: 0.03 to 0.3.
+  static constexpr double kLeastDamping = 1e-5;  ///< Least λ. Range: 1e-7 to 1e-3.
+  static constexpr double kLess = 0.4;           ///< Factor of λ after a step that is taken. Range: 0.3 to 0.5.
+  static constexpr double kMore = 12.0;          ///< Factor of λ after any other step. Range: 4 to 20.
+  static constexpr double kSlow = 0.7;           ///< Least ratio of the costs of a slow step. Range: 0.5 to 0.8.
+  /// An attempt with a smaller cost, in squares of the characteristic length, does not give up: the target may be near
+  /// a singular posture. Without this value, 6 of 30,000 poses of a Panda are not found with 256 starts.
   static constexpr double kNear = 1e-5;
-  static constexpr double kMostSteps = 16.0;
+  static constexpr double kMostSteps = 16.0;  ///< Bound on the steps of an attempt, a multiple of its patience.
+
+  // settle(): InverseOfStacks.approaches_a_posture_below_a_pose prints the slope along the null space at the end.
   static constexpr int kSettling = 40;
   static constexpr int kCorrections = 4;
   static constexpr int kSlowSteps = 3;

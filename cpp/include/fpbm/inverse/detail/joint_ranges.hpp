@@ -96,7 +96,7 @@ class SpreadPostures {
   }
 
  private:
-  static constexpr int kCandidates = 4;
+  static constexpr int kCandidates = 4;  ///< Range: 2 to 8, as for the values of Attempts.
 
   Vector<N, Scalar> from_;
   Vector<N, Scalar> width_;

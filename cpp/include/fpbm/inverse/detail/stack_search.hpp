@@ -120,8 +120,8 @@ class StackSearch {
   [[nodiscard]] JointVector correction(const Trial& now) const noexcept { return step(now, Scalar(0), false); }
 
  private:
-  static constexpr Scalar kLongest = Scalar(1.3);
-  static constexpr Scalar kRegular = Scalar(1e-12);
+  static constexpr Scalar kLongest = Scalar(1.3);    ///< As TipSearch::kLongest.
+  static constexpr Scalar kRegular = Scalar(1e-12);  ///< As TipSearch::kRegular.
 
   [[nodiscard]] JointVector step(const Trial& now, Scalar lambda, bool all) const noexcept {
     JointBits held = 0;

@@ -61,7 +61,8 @@ class StartSearch {
     return !none_of(active_);
   }
 
-  /// Later attempts are more patient, for targets near singular postures.
+  /// Later attempts are more patient, for targets near singular postures. The value is a choice: the patience doubles
+  /// in 64 starts.
   static constexpr int kStartsPerPatience = 16;
 
   const Search& search_;
