@@ -34,33 +34,60 @@ struct PyPostures {
   std::vector<Status> status;
 };
 
-/// A rotation with errors up to kLargest is replaced by the nearest rotation.
-Transform<> rounded_transform(const ArrayLike& given, const std::string& name) {
-  constexpr double kLargest = 1e-3;
-  const auto H = matrix<Eigen::Matrix4d>(given, name.c_str(), 4, 4);
-  const Eigen::Matrix3d R = H.topLeftCorner<3, 3>();
-  const double error = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(error <= kLargest)) {
-    validation::fail(validation::Argument(name) + ".R's largest error of R'R", error,
-                     "at most 0.001: must be a rotation matrix");
+/// The point of a task space from Space::kSize numbers. A rotation with errors up to kLargest is replaced by the
+/// nearest rotation. name(): name of the target. Throws std::invalid_argument.
+template <typename Space, typename Name>
+[[nodiscard]] typename Space::template Point<double> point_of(const double* numbers, const Name& name) {
+  for (int i = 0; i < Space::kSize; ++i) {
+    if (!std::isfinite(numbers[i])) {
+      const std::string target = name();
+      if constexpr (std::is_same_v<Space, Pose>) {
+        validation::fail(validation::element(target, i / 4, i % 4), numbers[i], "finite");
+      } else {
+        validation::fail(validation::element(target, i), numbers[i], "finite");
+      }
+    }
   }
-  Eigen::Matrix4d rounded = H;
-  rounded.topLeftCorner<3, 3>() = nearest_rotation(nearest_rotation(Matrix<3, 3>(R)));
-  return transform_of(rounded, [&] { return validation::Argument(name); });
-}
-
-template <typename Space>
-[[nodiscard]] typename Space::template Point<double> target_of(const ArrayLike& given, const std::string& name) {
   if constexpr (std::is_same_v<Space, Pose>) {
-    return rounded_transform(given, name);
+    constexpr double kLargest = 1e-3;
+    Eigen::Matrix4d H = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(numbers);
+    const Matrix<3, 3> R = H.topLeftCorner<3, 3>();
+    const double error = (R.transpose() * R - Matrix<3, 3>::Identity()).cwiseAbs().maxCoeff();
+    if (!(error <= kLargest)) {
+      const std::string target = name();
+      validation::fail(validation::Argument(target) + ".R's largest error of R'R", error,
+                       "at most 0.001: must be a rotation matrix");
+    }
+    H.topLeftCorner<3, 3>() = nearest_rotation(nearest_rotation(R));
+    std::string target;
+    return transform_of(H, [&] {
+      target = name();
+      return validation::Argument(target);
+    });
   } else {
-    return fixed_vector<Space::kSize>(given, name.c_str());
+    return Eigen::Map<const Vector<Space::kSize>>(numbers);
   }
 }
 
-/// Entry i of an array along its first axis.
-[[nodiscard]] ArrayLike entry(const py::handle& array, py::ssize_t i) {
-  return ArrayLike(py::object(array[py::int_(i)]));
+/// Targets of a task in an array: `count` targets, or one target. Throws std::invalid_argument.
+template <typename Space>
+[[nodiscard]] std::vector<typename Space::template Point<double>> points_of(const py::object& given,
+                                                                            std::optional<py::ssize_t> count,
+                                                                            const std::string& name) {
+  constexpr bool kMatrix = std::is_same_v<Space, Pose>;
+  const auto array = real_array(ArrayLike(given), name.c_str(), (kMatrix ? 2 : 1) + (count ? 1 : 0));
+  const py::ssize_t last = array.shape(array.ndim() - 1);
+  if (array.size() != count.value_or(1) * Space::kSize || (kMatrix && last != 4)) {
+    const std::string wanted = kMatrix ? "(4, 4)" : "(" + std::to_string(Space::kSize) + ",)";
+    validation::reject(name, ": must have shape " + wanted + ", got shape " + shape_text(array));
+  }
+  std::vector<typename Space::template Point<double>> points;
+  points.reserve(static_cast<std::size_t>(count.value_or(1)));
+  for (py::ssize_t i = 0; i < count.value_or(1); ++i) {
+    points.push_back(point_of<Space>(array.data() + i * Space::kSize,
+                                     [&] { return count ? name + "[" + std::to_string(i) + "]" : name; }));
+  }
+  return points;
 }
 
 /// Number of targets in an array of targets of the given dimensions, or none for one target.
@@ -82,10 +109,10 @@ struct TipTargets {
   [[nodiscard]] static std::optional<py::ssize_t> count(const py::object& given) {
     return count_of(given, std::is_same_v<Space, Pose> ? 2 : 1);
   }
-  /// The target, or target i of several.
-  [[nodiscard]] static Point read(const py::object& given, std::optional<py::ssize_t> i, const JointVector&) {
-    return i ? target_of<Space>(entry(given, *i), "target[" + std::to_string(*i) + "]")
-             : target_of<Space>(ArrayLike(given), "target");
+  /// The target, or `count` targets.
+  [[nodiscard]] static std::vector<Point> read(const py::object& given, std::optional<py::ssize_t> count,
+                                               const std::vector<JointVector>&) {
+    return points_of<Space>(given, count, "target");
   }
 };
 
@@ -113,15 +140,22 @@ struct StackTargets {
   }
 
   /// Tasks without a target in the dictionary keep the target of the stack or, without one, their point at the start.
-  [[nodiscard]] Point read(const py::object& given, std::optional<py::ssize_t> i, const JointVector& start) const {
-    auto reference = Reference<Space>::hold(solver->tip(start));
-    for (std::size_t k = 0; k < plan.tasks.size(); ++k) {
-      if (plan.targets[k]) plan.tasks[k].put(*plan.targets[k], reference);
+  [[nodiscard]] std::vector<Point> read(const py::object& given, std::optional<py::ssize_t> count,
+                                        const std::vector<JointVector>& starts) const {
+    const auto given_parts = parts(given);
+    std::vector<Point> points;
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+      auto reference = Reference<Space>::hold(solver->tip(starts[i]));
+      for (std::size_t k = 0; k < plan.tasks.size(); ++k) {
+        if (plan.targets[k]) plan.tasks[k].put(*plan.targets[k], reference);
+      }
+      for (const auto& [task, target] : given_parts) {
+        const py::object one = count ? py::object(target[py::int_(i)]) : target;
+        task->put(of_task(*task, one), reference);
+      }
+      points.push_back(reference.x);
     }
-    for (const auto& [task, target] : parts(given)) {
-      task->put(of_task(*task, i ? py::object(entry(target, *i)) : target), reference);
-    }
-    return reference.x;
+    return points;
   }
 
  private:
@@ -136,7 +170,7 @@ struct StackTargets {
   }
   [[nodiscard]] static StackTarget of_task(const StackTask& task, const py::object& given) {
     if (task.kind == TaskKind::kPose && !py::isinstance<py::tuple>(given)) {
-      return {rounded_transform(ArrayLike(given), task.name), {}, JointVector::Zero(6), JointVector::Zero(6)};
+      return {points_of<Pose>(given, std::nullopt, task.name)[0], {}, JointVector::Zero(6), JointVector::Zero(6)};
     }
     return read_target(task, given);
   }
@@ -204,11 +238,11 @@ class PyInverse {
     return std::visit(
         [&](auto& of) -> std::variant<PyPosture, PyPostures> {
           if (const auto count = of.count(target)) return solve_many(of, target, *count, start);
-          const JointVector q0 = start_of(start);
-          const auto point = of.read(target, std::nullopt, q0);
+          const std::vector<JointVector> starts{start_of(start)};
+          const auto points = of.read(target, std::nullopt, starts);
           const py::gil_scoped_release others_may_run;
           const std::lock_guard lock(mutex_);
-          return PyPosture{of.solver->solve(point, q0)};
+          return PyPosture{of.solver->solve(points[0], starts[0])};
         },
         any_);
   }
@@ -216,14 +250,15 @@ class PyInverse {
   /// Distinct postures, the nearest to the start first.
   [[nodiscard]] std::vector<PyPosture> solve_all(const py::object& target, const OptionalArray& start,
                                                  std::size_t count) {
-    const JointVector q0 = start_of(start);
+    const std::vector<JointVector> starts{start_of(start)};
+    const JointVector& q0 = starts[0];
     std::vector<AnyPosture> found;
     std::visit(
         [&](auto& of) {
-          const auto point = of.read(target, std::nullopt, q0);
+          const auto points = of.read(target, std::nullopt, starts);
           const py::gil_scoped_release others_may_run;
           const std::lock_guard lock(mutex_);
-          of.solver->search(point, q0, [&](const AnyPosture& posture) {
+          of.solver->search(points[0], q0, [&](const AnyPosture& posture) {
             if (std::none_of(found.begin(), found.end(), [&](const auto& known) { return is_same(known, posture); })) {
               found.push_back(posture);
             }
@@ -263,15 +298,18 @@ class PyInverse {
       return std::isfinite(middle) ? middle : std::min(std::max(0.0, limits_.lower(i)), limits_.upper(i));
     });
   }
-  /// Start i, or the start of all targets.
-  [[nodiscard]] JointVector start_of(const OptionalArray& given, py::ssize_t i, py::ssize_t count) const {
-    if (!given || dimensions(*given) != 2) return start_of(given);
+  /// A start for each target.
+  [[nodiscard]] std::vector<JointVector> starts_of(const OptionalArray& given, py::ssize_t count) const {
+    if (!given || dimensions(*given) != 2) return std::vector(static_cast<std::size_t>(count), start_of(given));
     const auto rows = real_array(*given, "start", 2);
     if (rows.shape(0) != count) {
       validation::fail("start's number of rows", static_cast<int>(rows.shape(0)),
                        "equal to the number of targets = ", static_cast<int>(count));
     }
-    return start_of(ArrayLike(entry(rows, i)));
+    const Eigen::MatrixXd all = matrix(*given, "start", count, dof());
+    std::vector<JointVector> starts;
+    for (Eigen::Index i = 0; i < all.rows(); ++i) starts.emplace_back(all.row(i).transpose());
+    return starts;
   }
 
   template <typename Targets_>
@@ -282,12 +320,8 @@ class PyInverse {
   template <typename Targets_>
   [[nodiscard]] PyPostures solve_many(Targets_& of, const py::object& target, py::ssize_t count,
                                       const OptionalArray& start) {
-    std::vector<JointVector> starts;
-    std::vector<typename Targets_::Point> targets;
-    for (py::ssize_t i = 0; i < count; ++i) {
-      starts.push_back(start_of(start, i, count));
-      targets.push_back(of.read(target, i, starts.back()));
-    }
+    const std::vector<JointVector> starts = starts_of(start, count);
+    const auto targets = of.read(target, count, starts);
     std::vector<AnyPosture> found(targets.size());
     {
       const py::gil_scoped_release others_may_run;
@@ -322,29 +356,33 @@ class PyInverse {
 /// The last solver of a model, for repeated calls of inverse() with the same options.
 struct InverseMemory {
   std::string task;
-  std::vector<py::object> objects;  ///< stack, limits and each of the bounds.
+  py::object stack;
+  py::object limits;
+  py::tuple bounds;
   double tolerance;
   int starts;
   std::uint32_t seed;
   std::shared_ptr<PyInverse> solver;
+
+  [[nodiscard]] bool is_for(const std::string& task_, const py::object& stack_, const py::object& limits_,
+                            const py::tuple& bounds_, double tolerance_, int starts_, std::uint32_t seed_) const {
+    const auto is_same = [](const py::handle& a, const py::handle& b) { return a.is(b); };
+    return task == task_ && stack.is(stack_) && limits.is(limits_) && tolerance == tolerance_ && starts == starts_ &&
+           seed == seed_ && std::equal(bounds.begin(), bounds.end(), bounds_.begin(), bounds_.end(), is_same);
+  }
 };
 
 /// The solver of a model with these options, of the last call or new.
 std::shared_ptr<PyInverse> solver_of(const Model& model, const std::string& task, const py::object& stack,
                                      const py::object& limits, const py::object& bounds, double tolerance, int starts,
                                      std::uint32_t seed) {
-  std::vector<py::object> objects{stack, limits};
   if (!py::isinstance<py::iterable>(bounds)) (void)bounds_of(model, bounds);
-  for (const py::handle each : bounds) objects.push_back(py::reinterpret_borrow<py::object>(each));
+  const auto each = py::isinstance<py::tuple>(bounds) ? py::reinterpret_borrow<py::tuple>(bounds) : py::tuple(bounds);
   auto memory = std::static_pointer_cast<InverseMemory>(model.inverse);
-  const bool same = memory && memory->task == task && memory->tolerance == tolerance && memory->starts == starts &&
-                    memory->seed == seed &&
-                    std::equal(objects.begin(), objects.end(), memory->objects.begin(), memory->objects.end(),
-                               [](const py::object& a, const py::object& b) { return a.is(b); });
-  if (!same) {
-    auto solver = std::make_shared<PyInverse>(model, task, stack, limits, bounds, tolerance, starts, seed);
+  if (!memory || !memory->is_for(task, stack, limits, each, tolerance, starts, seed)) {
     memory = std::make_shared<InverseMemory>(
-        InverseMemory{task, std::move(objects), tolerance, starts, seed, std::move(solver)});
+        InverseMemory{task, stack, limits, each, tolerance, starts, seed,
+                      std::make_shared<PyInverse>(model, task, stack, limits, each, tolerance, starts, seed)});
     model.inverse = memory;
   }
   return memory->solver;
