@@ -209,6 +209,30 @@ TEST(Inverse, turns_continuous_joints_the_shorter_way) {
   }
 }
 
+/// The ends of a range of one turn do not bound the search: the joint passes them, and the result is within the range.
+TEST(Inverse, passes_the_ends_of_whole_turns) {
+  const Spatial arm = any_arm(presets::ur5e());
+  auto limits = arm.limits();
+  limits.lower.setConstant(-kHalfTurn);
+  limits.upper.setConstant(kHalfTurn);
+  InverseKinematics inverse(arm, Pose{}, patient(), limits);
+  InverseKinematics wider(arm, Pose{}, patient());
+  Random random(17);
+  int starts = 0;
+  int starts_of_wider = 0;
+  for (int k = 0; k < trials(300); ++k) {
+    const auto target = kinematics_at<Pose>(arm, random_posture(random, limits)).tip;
+    const auto start = random_posture(random, limits);
+    const auto found = inverse.solve(target, start);
+    EXPECT_TRUE(found.solved()) << k;
+    expect_within(limits, found.q);
+    expect_at<Pose>(arm, found, target, 1e-6);
+    starts += found.starts;
+    starts_of_wider += wider.solve(target, start).starts;
+  }
+  EXPECT_EQ(starts, starts_of_wider);
+}
+
 TEST(Inverse, moves_a_start_into_the_ranges) {
   const Spatial arm = any_arm(presets::panda());
   Random random(11);

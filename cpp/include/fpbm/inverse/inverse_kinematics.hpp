@@ -160,6 +160,11 @@ class InverseKinematics {
       const auto change = Space::template difference<Scalar>(kinematics_at(moved).tip, kinematics_at(q).tip);
       return norm(change) / (Scalar(1) + length_);
     });
+    if constexpr (kIsProduct<Space>) {
+      // A turn of a leader by 2π may turn its followers, which move no task, by another angle toward a bound.
+      if (arm_.robot().drives().follows()) ranges_.periodic = 0;
+    }
+    turning_ = ranges_.turning();
   }
 
   using One = SearchOf<Arm, Space, Bounds_>;
@@ -175,11 +180,15 @@ class InverseKinematics {
   [[nodiscard]] Search make_search(const Arm_& arm, const Point& target) noexcept {
     using In = typename Search::Scalar;
     using Joints = typename Search::JointVector;
-    const auto cast = [](const JointVector& q) noexcept {
-      return Joints(entrywise_as<In>(q, [&](Eigen::Index i) { return In(q.coeff(i)); }));
+    const auto ends = [&](const JointVector& q, Scalar without) noexcept {
+      return Joints(entrywise_as<In>(
+          q, [&](Eigen::Index i) { return In((turning_ & joint_bit(i)) != 0 ? without : q.coeff(i)); }));
     };
+    constexpr Scalar kNone = std::numeric_limits<Scalar>::infinity();
+    const Joints lower = ends(ranges_.lower, -kNone);
+    const Joints upper = ends(ranges_.upper, kNone);
     if constexpr (Search::kHasRest) {
-      return Search(arm, length_, bounds_, cast(ranges_.lower), cast(ranges_.upper), target, options_.tolerance);
+      return Search(arm, length_, bounds_, lower, upper, target, options_.tolerance);
     } else {
       typename Space::template Point<In> targets;
       if constexpr (kInLanes<In>) {
@@ -187,7 +196,7 @@ class InverseKinematics {
       } else {
         targets = target;
       }
-      return Search(arm, In(length_), cast(ranges_.lower), cast(ranges_.upper), targets, In(options_.tolerance));
+      return Search(arm, In(length_), lower, upper, targets, In(options_.tolerance));
     }
   }
 
@@ -221,7 +230,8 @@ class InverseKinematics {
   InverseOptions<Scalar> options_;
   Bounds_ bounds_;
   JointRanges<N, Scalar> ranges_;
-  Scalar length_{1};  ///< Characteristic length [m].
+  JointBits turning_ = 0;  ///< JointRanges::turning().
+  Scalar length_{1};       ///< Characteristic length [m].
 };
 
 template <typename Arm, typename Space, typename... More>

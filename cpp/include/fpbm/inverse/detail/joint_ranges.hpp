@@ -26,6 +26,19 @@ struct JointRanges {
   template <typename Difference>
   void examine(const Difference& difference) noexcept;
 
+  /// Bits of the periodic joints with a range of at least one turn. For these joints, every position is equal to a
+  /// position in the range, so that the ends do not bound a search.
+  [[nodiscard]] JointBits turning() const noexcept {
+    constexpr Scalar kRoundOff = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
+    JointBits joints = 0;
+    each_joint(periodic, [&](Eigen::Index i) noexcept {
+      if (upper.coeff(i) - lower.coeff(i) >= static_cast<Scalar>(kTwoPi) * (Scalar(1) - kRoundOff)) {
+        joints |= joint_bit(i);
+      }
+    });
+    return joints;
+  }
+
   [[nodiscard]] Vector<N, Scalar> clamp(const Vector<N, Scalar>& q) const noexcept {
     return entrywise(q, [&](Eigen::Index i) { return std::min(std::max(q.coeff(i), lower.coeff(i)), upper.coeff(i)); });
   }
