@@ -37,7 +37,7 @@ const DAMPED = 2;
 const SLOWED = 3;
 const RECOVERING = 5;
 const STALLED = 6;
-const NOT_FINITE = 9;
+const NOT_FINITE = 10;
 
 /// The current state of the arm as a sentence. leads: whether the scheme has feedback of the tip error.
 export function describe({ status, dragging, following, resting, damped, limited, leads, fastest, error }) {
