@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import signal
 import socket
 import subprocess
@@ -193,6 +194,15 @@ def shared_stack():
 def stacked(shared_stack):
     shared_stack.restart()
     return shared_stack
+
+
+def test_a_handle_that_the_browser_displaced_returns_to_its_frame_when_the_drag_ends(stacked):
+    upright = next(handle for handle in stacked._scene.handles if handle.task.name == "upright")
+    upright._gizmo.position = [0.01, -0.02, 0.03]
+    for phase, displaced in (("update", True), ("end", False)):
+        for told in upright._gizmo._impl_aux.update_cb:
+            asyncio.run(told(SimpleNamespace(phase=phase)))
+        assert np.any(np.asarray(upright._gizmo.position)) == displaced
 
 
 def test_each_task_of_a_frame_has_a_handle(stacked):

@@ -56,7 +56,9 @@ class Handle:
             arrow = np.array([[np.zeros(3), size * np.eye(3)[axis]]])
             scene.add_arrows(f"/handles/{index}/gizmo/{axis}", arrow, COLOURS[axis], **widths)
 
-        async def tell(_: Any) -> None:  # Functions that are not async may be called out of order.
+        async def tell(event: Any) -> None:  # Functions that are not async may be called out of order.
+            if event.phase == "end":  # The browser displaces the handle where the carrier moves during a rotation.
+                self._gizmo.position = self._held * self._gizmo.position
             moved(self.target)
 
         self._gizmo.on_update(tell)
