@@ -211,7 +211,7 @@ AnyTargets targets_of(const Model& model, const std::string& task, const py::obj
                       const InverseOptions<>& options, const JointLimits<kDynamic>& limits, const py::object& bounds) {
   if (!stack.is_none()) return stack_targets(model, read_stack(stack, model), options, limits, bounds, false);
   const auto* arm = dynamic_cast<const Arm*>(&model);
-  if (arm == nullptr) validation::reject("stack", ": must be given for a Robot, which has no tip of its own");
+  if (arm == nullptr) validation::reject("stack", ": must be given for a Robot, because a Robot has several tips");
   return arm->visit(task, [&](const auto& any, auto space) -> AnyTargets {
     using Space = decltype(space);
     if (py::len(py::tuple(bounds)) > 0) {

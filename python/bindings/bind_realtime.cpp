@@ -122,7 +122,7 @@ class PyTracker {
       return;
     }
     const auto* arm = dynamic_cast<const Arm*>(&model);
-    if (arm == nullptr) validation::reject("stack", ": must be given for a Robot, which has no tip of its own");
+    if (arm == nullptr) validation::reject("stack", ": must be given for a Robot, because a Robot has several tips");
     any_ = arm->visit(task, [&](const auto& any, auto space) {
       using Space = decltype(space);
       require_enough_joints<Space>(dof_);

@@ -25,7 +25,7 @@ FAILURES = 3  # Number of postures in StartPosture.fails_at.
 class PathFailure(NamedTuple):
     """Where the motion from a start posture leaves the path."""
 
-    q: Array  # Start posture [rad].
+    q: Array  # Start posture [rad], or [m] for a prismatic joint, shape (n,).
     time: float  # First time at which the tip is farther from the path than the tolerance [s].
     status: Status  # Worst status of the motion up to this time.
     error: float  # Largest distance from the path in the whole motion [m].

@@ -12,9 +12,8 @@ inline constexpr int kPatience = 4;
 
 /// Attempts of a search from several postures, one for each lane of the Scalar.
 ///
-/// A step that makes the posture better is taken, and λ decreases. Otherwise, the
-/// posture does not change, and λ increases. Search: TipSearch or
-/// StackSearch.
+/// A step that makes the posture better is taken, and λ decreases. Otherwise, the posture does not change, and λ
+/// increases. Search: TipSearch or StackSearch.
 template <typename Search>
 class Attempts {
  public:

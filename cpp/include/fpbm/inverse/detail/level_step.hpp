@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 
 #include "fpbm/core/types.hpp"
@@ -47,12 +48,14 @@ class LevelStep {
   void add(const Rows& rows, const Vector<M, Scalar>& e, Scalar damping) noexcept {
     add_rows(matrix_of(rows), e, damping);
   }
-  /// Adds a level with the rows of the gaps.
+  /// Adds a level with the rows of the gaps, as many as memory is reserved for: a level with kMaxDof rows determines all
+  /// joints.
   template <typename Rows, int M>
   void add(const Rows& rows, const Vector<M, Scalar>& e, const NearGaps<N, Scalar>& gaps, Scalar damping) noexcept {
     const auto& J = matrix_of(rows);
-    Matrix<Eigen::Dynamic, N, Scalar> all(e.size() + gaps.count, step_.size());
-    Vector<Eigen::Dynamic, Scalar> errors(e.size() + gaps.count);
+    const Eigen::Index count = std::min<Eigen::Index>(gaps.count, kMaxDof - e.size());
+    Matrix<Eigen::Dynamic, N, Scalar> all(e.size() + count, step_.size());
+    Vector<Eigen::Dynamic, Scalar> errors(e.size() + count);
     for (Eigen::Index i = 0; i < all.rows(); ++i) {
       const Eigen::Index gap = i - e.size();
       errors.coeffRef(i) = gap < 0 ? e.coeff(i) : gaps.beyond.coeff(gap);
