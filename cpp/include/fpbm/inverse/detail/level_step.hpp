@@ -48,8 +48,8 @@ class LevelStep {
   void add(const Rows& rows, const Vector<M, Scalar>& e, Scalar damping) noexcept {
     add_rows(matrix_of(rows), e, damping);
   }
-  /// Adds a level with the rows of the gaps, as many as memory is reserved for: a level with kMaxDof rows determines all
-  /// joints.
+  /// Adds a level with the rows of the gaps, as many as memory is reserved for: a level with kMaxDof rows determines
+  /// all joints.
   template <typename Rows, int M>
   void add(const Rows& rows, const Vector<M, Scalar>& e, const NearGaps<N, Scalar>& gaps, Scalar damping) noexcept {
     const auto& J = matrix_of(rows);
