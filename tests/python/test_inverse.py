@@ -288,3 +288,18 @@ def test_start_posture_tells_where_motions_leave_the_path() -> None:
         assert "leaves the path at" in str(each)
     with pytest.raises(fp.ParameterError, match=r"x0.*no posture found; the nearest is"):
         fp.start_posture(PANDA, path, fp.MVN(k=5), x0=[3, 0, 0])
+
+
+@pytest.mark.parametrize("n", [48, 62, 64])
+def test_a_posture_of_many_joints_on_the_first_level_keeps_its_bounds(n: int) -> None:
+    """The rows of the posture and of the walls together are more than the joints of the largest robot."""
+    table = [(0.05, (-1) ** i * np.pi / 2, 0.02, 0.0) for i in range(n)]
+    arm = fp.SerialArm.from_dh(table, "classic", lower=-2.5, upper=2.5)
+    rest = np.full(n, 0.1)
+    place = arm.forward(rest)[:3, 3]
+    stack = fp.Stack(fp.PostureTask(name="rest"))
+    for margin, solved in ((0.01, True), (-0.01, False)):
+        wall = fp.TaskBounds(fp.PositionTask(), lower=place - margin)
+        found = arm.inverse({"rest": rest}, rest + 0.05, stack=stack, bounds=[wall], starts=4)
+        assert found.solved == solved
+        assert not solved or np.abs(found.q - rest).max() < 1e-6

@@ -27,8 +27,8 @@ class PathFailure(NamedTuple):
 
     q: Array  # Start posture [rad], or [m] for a prismatic joint, shape (n,).
     time: float  # First time at which the tip is farther from the path than the tolerance [s].
-    status: Status  # Worst status of the motion up to this time.
-    error: float  # Largest distance from the path in the whole motion [m].
+    status: Status  # Worst status of the whole motion.
+    error: float  # Largest distance [m] or angle [rad] from the path in the whole motion.
 
     def __str__(self) -> str:
         reason = self.status.name.lower().replace("_", " ")
@@ -129,9 +129,7 @@ def start_posture(
 
 def deviations(run: Run) -> Array:
     """Distance [m], or angle [rad] if it is larger, from the path at each sample."""
-    linear = run.error.shape[1] - (3 if run.error.shape[1] == 6 else 0)
-    parts = [np.linalg.norm(run.error[:, :linear], axis=1), np.linalg.norm(run.error[:, linear:], axis=1)]
-    return np.asarray(np.max(parts, axis=0))
+    return np.maximum(*run.error_norms())
 
 
 def failure(run: Run, tolerance: float) -> PathFailure:
