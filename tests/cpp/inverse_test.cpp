@@ -450,6 +450,30 @@ TEST(InverseWithinBounds, finds_postures_clear_of_obstacles) {
   EXPECT_GE(beyond, all / 10) << "the bounds must matter";
 }
 
+/// A posture with a large tolerance may be far from its target, and keeps the bounds.
+TEST(InverseWithinBounds, keeps_the_bounds_with_every_tolerance) {
+  Cell cell;
+  const RobotTasks tasks(cell.robot, cell.stack);
+  for (const double tolerance : {1e-8, 1e-4, 1e-3, 1e-2, 1e-1}) {
+    InverseOptions<> options = patient();
+    options.tolerance = tolerance;
+    Bounds bounds(cell.clearance, cell.walls);
+    InverseKinematics inverse(cell.robot, cell.stack, options, cell.robot.limits(), bounds);
+    Random random(18);
+    int solved = 0;
+    for (int i = 0; i < trials(60); ++i) {
+      const auto q = random_posture(random, cell.robot.limits());
+      const auto target = kinematics_at<decltype(cell.stack)::Space>(tasks, q).tip;
+      const auto found = inverse.solve(target, random_posture(random, cell.robot.limits()));
+      if (!found.solved()) continue;
+      ++solved;
+      EXPECT_LE(found.error, tolerance);
+      EXPECT_EQ(complaint([&] { bounds.require(found.q); }), "") << tolerance;
+    }
+    EXPECT_GT(solved, 0);
+  }
+}
+
 TEST(InverseWithinBounds, finds_nothing_behind_a_wall) {
   Cell cell;
   const RobotTasks tasks(cell.robot, cell.stack);

@@ -40,7 +40,7 @@ class StackSearch {
     Kinematics<Space, N, Scalar> kinematics;
     decltype(errors_of(std::make_index_sequence<Stack_::kLevels>{})) errors;  ///< Errors of each level, in metres.
     NearGaps<N, Scalar> gaps;
-    /// Σ e² of the tasks of each level that must reach their targets, and of the gaps [m²].
+    /// Σ e² of the tasks of each level that must reach their targets, and the cost of the gaps [m²].
     std::array<Scalar, std::size_t{Stack_::kLevels}> costs;
     std::array<bool, std::size_t{Stack_::kLevels}> must;  ///< Whether a level has tasks that must reach their targets.
     Scalar cost;                                          ///< Σ costs [m²]
@@ -50,8 +50,9 @@ class StackSearch {
   StackSearch(const Arm& arm, Scalar length, Bounds_& bounds, const JointVector& lower, const JointVector& upper,
               const Point& target, Scalar tolerance) noexcept
       : arm_(arm), bounds_(bounds), lower_(lower), upper_(upper), target_(target), length_(length) {
-    const Scalar least = std::min(Scalar(1), length);
-    enough_ = tolerance * tolerance * least * least;
+    const Scalar largest = tolerance * std::min(Scalar(1), length);
+    enough_ = largest * largest;
+    gap_weight_ = NearGaps<N, Scalar>::weight(largest);
   }
 
   /// Characteristic length [m].
@@ -140,7 +141,7 @@ class StackSearch {
 
   void set_errors(Trial& trial) const noexcept {
     const Vector<Space::kRows, Scalar> error = task_error(trial.kinematics, target_);
-    trial.gaps.set(bounds_, trial.q);
+    trial.gaps.set(bounds_, trial.q, gap_weight_);
     trial.costs.fill(Scalar(0));
     trial.must.fill(false);
     trial.costs[0] = trial.gaps.cost;
@@ -209,7 +210,8 @@ class StackSearch {
   JointVector upper_;
   Point target_;
   Scalar length_;
-  Scalar enough_;  ///< Largest cost at a target [m²].
+  Scalar enough_;      ///< Largest cost at a target [m²].
+  Scalar gap_weight_;  ///< NearGaps::weight().
 };
 
 }  // namespace fpbm
