@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -25,15 +26,15 @@ namespace fpbm::test::inverse_laws {
 namespace {
 
 constexpr int kOpen = Eigen::Dynamic;
-constexpr double kHalfTurn = 3.14159265358979323846;
+constexpr double kPi = 3.14159265358979323846;
 using Spatial = AnyArm<Position<3>>;
 
 template <typename Limits_>
 [[nodiscard]] auto random_posture(Random& random, const Limits_& limits) {
   auto q = limits.lower;
   for (Eigen::Index i = 0; i < q.size(); ++i) {
-    const auto low = std::max(static_cast<double>(limits.lower(i)), -kHalfTurn);
-    const auto high = std::min(static_cast<double>(limits.upper(i)), kHalfTurn);
+    const auto low = std::max(static_cast<double>(limits.lower(i)), -kPi);
+    const auto high = std::min(static_cast<double>(limits.upper(i)), kPi);
     q(i) = static_cast<std::decay_t<decltype(q(i))>>(random.uniform(low, high));
   }
   return q;
@@ -128,6 +129,47 @@ TEST(Inverse, does_not_depend_on_the_size_of_the_arm) {
   }
 }
 
+/// A target that the start reaches after a half turn about any axis is not reached at the start.
+TEST(Inverse, makes_half_turns) {
+  for (const auto& [name, chain] : chains()) {
+    SCOPED_TRACE(name);
+    const Spatial arm = any_arm(chain);
+    InverseKinematics inverse(arm, Pose{}, patient());
+    Random random(19);
+    for (int k = 0; k < trials(100); ++k) {
+      const auto q = random_posture(random, arm.limits());
+      const auto wanted = random_posture(random, arm.limits());
+      for (const double angle : {0.0, 1e-12, 1e-8, 1e-4, 0.9e-3, 1.1e-3}) {
+        auto target = kinematics_at<Pose>(arm, wanted).tip;
+        const Matrix<3, 3> R = kinematics_at<Pose>(arm, q).tip.R;
+        Vector<3> axis = Vector<3>::Unit(k % 3);
+        if (k % 2 == 0) axis = random.uniform(3, -1.0, 1.0).normalized();
+        target.R = R * Eigen::AngleAxisd(kPi - angle, axis).toRotationMatrix();
+        if (k % 4 == 0) target.p = kinematics_at<Pose>(arm, q).tip.p;
+        const auto found = inverse.solve(target, q);
+        if (found.solved()) expect_at<Pose>(arm, found, target, 1e-6);
+      }
+    }
+  }
+}
+
+/// The error of a search has the direction of the rotation vector θ a, and the length 2 sin(θ/2), for all angles.
+TEST(Inverse, searches_along_the_rotation_vector) {
+  Random random(20);
+  for (int k = 0; k < trials(1000); ++k) {
+    const Vector<3> axis = random.uniform(3, -1.0, 1.0).normalized();
+    const double theta = k % 2 == 0 ? random.uniform(0.0, kPi) : kPi - std::pow(10.0, random.uniform(-12, 0));
+    Transform<> y;
+    y.R = Eigen::AngleAxisd(random.uniform(0.0, 3.0), random.uniform(3, -1.0, 1.0).normalized()).toRotationMatrix();
+    y.p = random.uniform(3, -1.0, 1.0);
+    Transform<> x = y;
+    x.R = Eigen::AngleAxisd(theta, axis).toRotationMatrix() * y.R;
+    const Vector<6> e = search_error<Pose, double>(x, y);
+    EXPECT_EQ(e.head<3>().norm(), 0.0);
+    EXPECT_LE((e.tail<3>() - 2.0 * std::sin(theta / 2.0) * axis).norm(), 1e-6) << theta;
+  }
+}
+
 /// The next waypoint of a path, 1 cm and 2° away, is reached on the branch of the posture before: no joint jumps.
 TEST(Inverse, stays_on_the_branch_of_a_near_start) {
   for (const auto& [name, chain] : chains()) {
@@ -199,12 +241,12 @@ TEST(Inverse, turns_continuous_joints_the_shorter_way) {
       Vector<kOpen> start = random_posture(random, arm.limits());
       const auto target = kinematics_at<Pose>(arm, random_posture(random, arm.limits())).tip;
       const bool continuous = !std::isfinite(arm.limits().upper(0));
-      if (continuous) start(0) += 40.0 * kHalfTurn;
+      if (continuous) start(0) += 40.0 * kPi;
       const auto found = inverse.solve(target, start);
       ASSERT_TRUE(found.solved());
       const double turn = std::abs(found.q(0) - start(0));
-      const bool has_room = continuous || (std::abs(start(0)) < kHalfTurn);
-      EXPECT_TRUE(!has_room || turn <= kHalfTurn + 1e-9) << k << ": " << turn;
+      const bool has_room = continuous || (std::abs(start(0)) < kPi);
+      EXPECT_TRUE(!has_room || turn <= kPi + 1e-9) << k << ": " << turn;
     }
   }
 }
@@ -213,8 +255,8 @@ TEST(Inverse, turns_continuous_joints_the_shorter_way) {
 TEST(Inverse, passes_the_ends_of_whole_turns) {
   const Spatial arm = any_arm(presets::ur5e());
   auto limits = arm.limits();
-  limits.lower.setConstant(-kHalfTurn);
-  limits.upper.setConstant(kHalfTurn);
+  limits.lower.setConstant(-kPi);
+  limits.upper.setConstant(kPi);
   InverseKinematics inverse(arm, Pose{}, patient(), limits);
   InverseKinematics wider(arm, Pose{}, patient());
   Random random(17);
@@ -299,7 +341,7 @@ TEST(Inverse, finds_all_branches_of_an_arm_with_six_joints) {
   (void)inverse.search(target, q, [&](const auto& found) noexcept {
     expect_at<Pose>(arm, found, target, 1e-6);
     const bool known = std::any_of(branches.begin(), branches.end(), [&](const auto& branch) {
-      const Vector<kOpen> turns = (branch - found.q) / (2.0 * kHalfTurn);
+      const Vector<kOpen> turns = (branch - found.q) / (2.0 * kPi);
       return (turns - Vector<kOpen>(turns.array().round())).cwiseAbs().maxCoeff() < 1e-3;
     });
     if (!known) branches.push_back(found.q);
