@@ -303,3 +303,14 @@ def test_a_posture_of_many_joints_on_the_first_level_keeps_its_bounds(n: int) ->
         found = arm.inverse({"rest": rest}, rest + 0.05, stack=stack, bounds=[wall], starts=4)
         assert found.solved == solved
         assert not solved or np.abs(found.q - rest).max() < 1e-6
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_a_half_turn_of_the_tip_is_a_motion(name: str) -> None:
+    arm = fp.SerialArm.preset(name)
+    q = (np.maximum(arm.limits.lower, -np.pi) + np.minimum(arm.limits.upper, np.pi)) / 2 + 0.1
+    start = arm.forward(q)
+    for axis in np.eye(3):
+        target = start @ np.block([[2 * np.outer(axis, axis) - np.eye(3), np.zeros((3, 1))], [np.eye(4)[3:]]])
+        found = arm.inverse(target, q, starts=512)
+        assert found.solved == (distance(forward(arm, found.q), target) <= 1e-6)
