@@ -10,7 +10,8 @@
 
 namespace fpbm {
 
-/// Value of 1 + trace below which a rotation is almost a half turn: |θ − π| < 1e-3, where s has at least 10 correct digits.
+/// Value of 1 + trace below which a rotation is almost a half turn: |θ − π| < 1e-3, where s has at least 10 correct
+/// digits.
 inline constexpr double kAlmostHalfTurn = 1e-6;
 
 /// Sets the angular rows of e to 2a, with the axis a of a half turn R, in the lanes of the mask.
