@@ -172,7 +172,9 @@ class InverseKinematics {
   using Many = SearchOf<BatchArm, Space, Bounds_>;
 
   /// The attempt from a given start that is nearer than kNear characteristic lengths to the target is patient, since
-  /// the posture on the branch of the start is expected, as for the next waypoint of a path.
+  /// the posture on the branch of the start is expected, as for the next waypoint of a path. Ranges: 12 to 100, and
+  /// 0.03 to 0.3. Of 60,000 waypoints (`make inverse`), 3 more are not on the branch of their start with a patience of
+  /// 4, and 2 more with kNear = 0.01.
   static constexpr int kPatienceNear = 32;
   static constexpr double kNear = 0.05;
 
