@@ -8,6 +8,7 @@
 #include "arrays.hpp"
 #include "clearance.hpp"
 #include "path.hpp"
+#include "read_stack.hpp"
 #include "scheme.hpp"
 #include "stack_loop.hpp"
 #include "target_filter.hpp"
@@ -60,11 +61,6 @@ PyTick python_tick(const StackLoop& loop, const StackLoop::Result& tick, const s
           tick.saturated, loop.error(tick), nearest,  loop.scales(tick), loop.parts()};
 }
 
-template <typename Space>
-Space space_of(const AnyTracker<Space>&) {
-  return {};
-}
-
 /// The result of take() for a tracker in a posture, with the nearest pair in the posture.
 template <typename Tracker, typename Take>
 PyTick tick_at(Tracker& tracker, const JointVector& q, Take&& take) {
@@ -88,7 +84,7 @@ class PyTracker {
           if constexpr (std::is_same_v<std::decay_t<decltype(held)>, Stacked>) {
             validation::reject("tracker", std::string(" has a stack of tasks: ") + remedy);
           } else {
-            return visitor(*held, space_of(*held));
+            return visitor(*held, typename std::decay_t<decltype(*held)>::Space{});
           }
         },
         any_);
@@ -117,8 +113,9 @@ class PyTracker {
     const JointVector before = qdd0 ? joint_vector(*qdd0, "qdd0", dof_) : JointVector::Zero(dof_);
     const JointLimits<kDynamic> bounds = limits_of(model, limits);
     const AnyBounds further = bounds_of(model, given);
+    const TrackerStart from{start, options, bounds, before, further};
     if (!stack.is_none()) {
-      any_ = std::make_unique<StackLoop>(stack, scheme, model, start, options, bounds, before, further);
+      any_ = std::make_unique<StackLoop>(read_stack(stack, model), scheme, from);
       return;
     }
     const auto* arm = dynamic_cast<const Arm*>(&model);
@@ -126,7 +123,7 @@ class PyTracker {
     any_ = arm->visit(task, [&](const auto& any, auto space) {
       using Space = decltype(space);
       require_enough_joints<Space>(dof_);
-      return Any(make_tracker<Space>(scheme, {any, start, options, bounds, before, further}));
+      return Any(make_tracker<Space>(any, scheme, from));
     });
   }
 
@@ -199,11 +196,9 @@ class PyTracker {
   }
 
   void stop() {
-    if (const auto* stacked = std::get_if<Stacked>(&any_)) return (*stacked)->stop();
     visit_any([](auto& tracker) { tracker.stop(); });
   }
   void resume() {
-    if (const auto* stacked = std::get_if<Stacked>(&any_)) return (*stacked)->resume();
     visit_any([](auto& tracker) { tracker.resume(); });
   }
   [[nodiscard]] Array q() {

@@ -75,7 +75,9 @@ class LaneTracker {
                   const Vector<N>& u) noexcept override {
       return tracker_->finish(now, references, u);
     }
-    Status advance(const TickReferences<Space>& references) noexcept override { return tracker_->advance(references); }
+    Status advance(const TickReferences<Space>& references) noexcept override {
+      return tracker_->advance(references).status;
+    }
 
    private:
     std::unique_ptr<Tracker> tracker_;

@@ -13,17 +13,17 @@
 
 namespace fpbm::bindings {
 
-StackLoop::StackLoop(const py::object& stack, const Scheme& scheme, const Model& model, const State<kDynamic>& start,
-                     const TrackerOptions<>& options, const JointLimits<kDynamic>& limits, const JointVector& qdd0,
-                     const AnyBounds& bounds)
-    : dt_(options.dt), motion_(read_stack(stack, model), scheme, start, options, limits, qdd0, bounds) {
+StackLoop::StackLoop(const StackPlan& plan, const Scheme& scheme, const TrackerStart& from)
+    : dt_(from.options.dt),
+      tracker_(make_tracker<AnyStack::Space>(plan.arm_at(scheme.level), scheme, from)),
+      references_(plan, tracker_->tip()) {
   auto parts = std::make_shared<Parts>();
-  for (const StackTask& task : motion_.plan().tasks) parts->emplace_back(task.name, task.size);
+  for (const StackTask& task : plan.tasks) parts->emplace_back(task.name, task.size);
   parts_ = std::move(parts);
 }
 
-std::optional<StackMotion::Source> StackLoop::source_of(const StackTask& task, const py::handle& given) const {
-  using Source = StackMotion::Source;
+std::optional<StackReferences::Source> StackLoop::source_of(const StackTask& task, const py::handle& given) const {
+  using Source = StackReferences::Source;
   const auto same = [&](auto& any, const char* argument) -> Source {
     if (task.kind == TaskKind::kPosition) {
       if (auto* found = std::get_if<2>(&any)) return found;
@@ -49,42 +49,43 @@ std::optional<StackMotion::Source> StackLoop::source_of(const StackTask& task, c
   return std::nullopt;
 }
 
-StackMotion::Sources StackLoop::read(const PyReferences& references) {
-  StackMotion::Sources sources;
-  StackMotion::Targets targets;
+void StackLoop::read(const PyReferences& references) {
+  StackReferences::Sources sources;
+  StackReferences::Targets targets;
   for (const auto& [key, given] : references) {
     if (!py::isinstance<py::str>(key)) {
       validation::reject("references", ": the keys of the dictionary must be task names");
     }
-    const StackTask& task = motion_.plan().task(py::cast<std::string>(key));
+    const StackTask& task = plan().task(py::cast<std::string>(key));
     if (const auto source = source_of(task, given)) {
       sources.emplace_back(&task, *source);
     } else {
       targets.emplace_back(&task, read_target(task, given));
     }
   }
-  motion_.aim(targets);
-  return sources;
+  references_.set(targets, std::move(sources));
 }
 
 StackLoop::Result StackLoop::tick(const PyReferences& references) {
-  return motion_.tick(read(references));
+  read(references);
+  return tracker_->tick(references_);
 }
 
 StackLoop::Result StackLoop::resolve_measured(const State<kDynamic>& measured, const PyReferences& references) {
-  return motion_.resolve_measured(measured, read(references));
+  read(references);
+  return tracker_->resolve_measured(measured, references_.take(0.0));
 }
 
 PyFollower StackLoop::follow(const Path& path, double ramp, const std::optional<std::string>& name) const {
-  const StackTask& task = motion_.plan().follower(name);
+  const StackTask& task = plan().follower(name);
   const Transform<> at = task.frame_of(tracker().tip());
   if (task.kind == TaskKind::kPose) return {AnyFollower<Pose>(path.as<Pose>(), at, ramp)};
   return {AnyFollower<Position<3>>(path.as<Position<3>>(), at.p, ramp)};
 }
 
 void StackLoop::enable(int level, bool on) {
-  if (level < 1 || level >= motion_.plan().levels) {
-    validation::fail("level", level, "a level below the first, at most ", motion_.plan().levels - 1);
+  if (level < 1 || level >= plan().levels) {
+    validation::fail("level", level, "a level below the first, at most ", plan().levels - 1);
   }
   tracker().enable(level, on);
 }
@@ -92,20 +93,21 @@ void StackLoop::enable(int level, bool on) {
 void StackLoop::reorder(const std::vector<int>& order) {
   std::array<int, AnyStack::kLevels> whole{};
   std::iota(whole.begin(), whole.end(), 0);  // Levels without tasks stay last.
-  const auto levels = static_cast<std::size_t>(motion_.plan().levels);
+  const auto levels = static_cast<std::size_t>(plan().levels);
   if (order.size() == levels) std::copy(order.begin(), order.end(), whole.begin());
-  const auto count = motion_.plan().levels;
+  const auto count = plan().levels;
   const bool sound =
       order.size() == levels && std::all_of(order.begin(), order.end(), [count](int k) { return k < count; });
-  if (!sound || !motion_.reorder(whole)) {
+  if (!sound || !tracker_->reorder(whole)) {
     validation::reject("order", ": must have each level from 0 to " + std::to_string(count - 1) +
                                     " once, with an enabled level first");
   }
+  references_.reorder(whole, tracker_->tip());
 }
 
 PyPoints StackLoop::points() const {
   PyPoints points;
-  for (const StackTask& task : motion_.plan().tasks) {
+  for (const StackTask& task : plan().tasks) {
     const py::str name(task.name);
     const Transform<> at = task.frame_of(tracker().tip());
     if (task.kind == TaskKind::kPosition || task.kind == TaskKind::kCenterOfMass) points[name] = array_of(at.p);
@@ -118,7 +120,7 @@ PyPoints StackLoop::points() const {
 }
 
 Array StackLoop::frame(const std::string& name) const {
-  const StackTask& task = motion_.plan().task(name);
+  const StackTask& task = plan().task(name);
   if (task.kind == TaskKind::kPosture) {
     validation::reject("task", " = '" + name + "': postures have no frame: must be a task of a frame");
   }
@@ -126,13 +128,13 @@ Array StackLoop::frame(const std::string& name) const {
 }
 
 Eigen::VectorXd StackLoop::scales(const Result& tick) const {
-  return Eigen::Map<const Eigen::VectorXd>(tick.scales.data(), motion_.plan().levels);
+  return Eigen::Map<const Eigen::VectorXd>(tick.scales.data(), plan().levels);
 }
 
 Eigen::VectorXd StackLoop::error(const Result& tick) const {
-  Eigen::VectorXd all(motion_.plan().error_size());
+  Eigen::VectorXd all(plan().error_size());
   Eigen::Index row = 0;
-  for (const StackTask& task : motion_.plan().tasks) {
+  for (const StackTask& task : plan().tasks) {
     all.segment(row, task.size) = task.error_of(tick.error);
     row += task.size;
   }

@@ -12,7 +12,7 @@
 #include "arrays.hpp"
 #include "bounds.hpp"
 #include "path.hpp"
-#include "stack_motion.hpp"
+#include "stack_references.hpp"
 
 namespace fpbm::bindings {
 
@@ -27,13 +27,12 @@ struct PyFollower {
 /// A tracker of a stack in Python: references and results by the names of the tasks.
 class StackLoop {
  public:
-  using Result = StackMotion::Result;
+  using Any = AnyTracker<AnyStack::Space>;
+  using Result = Any::Result;
   using Parts = std::vector<std::pair<std::string, int>>;
 
-  /// stack: an fpbm_cpp.Stack. Throws std::invalid_argument if a task does not fit the arm, and as fpbm::Tracker.
-  StackLoop(const py::object& stack, const Scheme& scheme, const Model& model, const State<kDynamic>& start,
-            const TrackerOptions<>& options, const JointLimits<kDynamic>& limits, const JointVector& qdd0,
-            const AnyBounds& bounds);
+  /// Throws std::invalid_argument as make_tracker() does.
+  StackLoop(const StackPlan& plan, const Scheme& scheme, const TrackerStart& from);
 
   /// One tick toward references: a dictionary of arguments of Tracker.tick(), by the names of the tasks. A task that is
   /// not in the dictionary keeps its last target, at rest. If a reference is invalid, throws std::invalid_argument
@@ -49,10 +48,7 @@ class StackLoop {
   /// The new level k is the old level order[k]. Throws std::invalid_argument unless order has each level once, and its
   /// first level is enabled.
   void reorder(const std::vector<int>& order);
-  void stop() noexcept { motion_.stop(); }
-  void resume() noexcept { motion_.resume(); }
-
-  [[nodiscard]] StackTracker& tracker() const noexcept { return motion_.tracker(); }
+  [[nodiscard]] Any& tracker() const noexcept { return *tracker_; }
   /// The present point of each task, by name, in the shape of references.
   [[nodiscard]] PyPoints points() const;
   /// The frame of a task, shape (4, 4); for an axis task, z is the axis.
@@ -65,12 +61,14 @@ class StackLoop {
   [[nodiscard]] const std::shared_ptr<const Parts>& parts() const noexcept { return parts_; }
 
  private:
-  /// The paths and filters among the references. Sets the targets of all other tasks.
-  [[nodiscard]] StackMotion::Sources read(const PyReferences& references);
-  [[nodiscard]] std::optional<StackMotion::Source> source_of(const StackTask& task, const py::handle& given) const;
+  [[nodiscard]] const StackPlan& plan() const noexcept { return references_.plan(); }
+  /// Sets the references of a tick.
+  void read(const PyReferences& references);
+  [[nodiscard]] std::optional<StackReferences::Source> source_of(const StackTask& task, const py::handle& given) const;
 
   double dt_;
-  StackMotion motion_;
+  std::unique_ptr<Any> tracker_;
+  StackReferences references_;
   std::shared_ptr<const Parts> parts_;
 };
 

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "fpbm/any/detail/any_path.hpp"
-#include "fpbm/simulate/detail/anchored_path.hpp"
+#include "fpbm/simulate/rollout.hpp"
+#include "scheme.hpp"
 #include "stack_tasks.hpp"
 
 namespace fpbm::bindings {
@@ -43,6 +45,15 @@ struct StackPath {
 
   [[nodiscard]] double duration() const noexcept { return options.duration; }
 };
+
+/// Recorder of a motion of a stack.
+using StackRecorder = std::function<bool(const Sample<AnyStack::Space, kDynamic>&)>;
+
+/// fpbm::rollout() of a stack. Throws std::invalid_argument as make_tracker() does. Compiled once, in
+/// stack_tracker.cpp.
+RolloutResult<kDynamic> rollout_of_stack(const StackPlan& plan, const StackPath& path, const Scheme& scheme,
+                                         const State<kDynamic>& start, const TimeGrid<double>& grid,
+                                         const StackRecorder& record);
 
 }  // namespace fpbm::bindings
 

@@ -7,6 +7,7 @@
 #include "fpbm/any/any_stack.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/path/reference.hpp"
+#include "fpbm/task/detail/robot_tasks.hpp"
 #include "model.hpp"
 
 namespace fpbm::bindings {
@@ -59,6 +60,9 @@ struct StackTask {
   [[nodiscard]] JointVector error_of(const Vector<Space::kRows>& error) const noexcept;
 };
 
+/// A robot with the tasks of a stack.
+using StackArm = RobotTasks<Robot<kDynamic>, AnyStack>;
+
 /// An fpbm_cpp.Stack for a robot.
 struct StackPlan {
   Tree<> tree;
@@ -68,8 +72,9 @@ struct StackPlan {
   AnyStack velocity;      ///< The tasks with their gains at velocity level,
   AnyStack acceleration;  ///< and at acceleration level.
 
-  [[nodiscard]] const AnyStack& at(Level level) const noexcept {
-    return level == Level::kVelocity ? velocity : acceleration;
+  /// Throws std::invalid_argument if a task does not fit the robot.
+  [[nodiscard]] StackArm arm_at(Level level) const {
+    return {Robot<kDynamic>(tree), level == Level::kVelocity ? velocity : acceleration};
   }
   /// Throws std::invalid_argument if no task has that name.
   [[nodiscard]] const StackTask& task(const std::string& name) const {

@@ -1,43 +1,69 @@
 #pragma once
 
+#include <array>
 #include <memory>
+#include <type_traits>
 
 #include "bounds.hpp"
+#include "fpbm/any/any_stack.hpp"
 #include "fpbm/any/detail/any_path.hpp"
 #include "fpbm/path/path_follower.hpp"
+#include "fpbm/realtime/detail/reference_sources.hpp"
+#include "fpbm/realtime/detail/stack_tick.hpp"
 #include "fpbm/realtime/detail/tick_references.hpp"
 #include "fpbm/realtime/tick.hpp"
 #include "fpbm/target/target_filter.hpp"
 #include "scheme.hpp"
+#include "stack_tasks.hpp"
 
 namespace fpbm::bindings {
 
 template <typename Space>
 using AnyFollower = PathFollower<AnyPath<Space>>;
 
-/// fpbm::Tracker of a task in Space, for any arm, scheme and bounds.
+/// The arm of a tracker of tasks in Space.
 template <typename Space>
+struct TrackedArm {
+  using type = AnyArmFor<Space>;
+};
+template <>
+struct TrackedArm<AnyStack::Space> {
+  using type = StackArm;
+};
+
+/// fpbm::Tracker of a task in Space, or of a stack of tasks, for any arm, scheme and bounds.
+template <typename Space_>
 class AnyTracker {
  public:
   static constexpr int N = kDynamic;
+  using Space = Space_;
   using Point = typename Space::template Point<double>;
   using Result = Tick<Space, kDynamic>;
 
-  AnyTracker() = default;
+  explicit AnyTracker(double dt) : dt_(dt) {}
   AnyTracker(const AnyTracker&) = delete;
   AnyTracker& operator=(const AnyTracker&) = delete;
   virtual ~AnyTracker() = default;
 
-  virtual Result tick(const Reference<Space>& reference) noexcept = 0;
-  virtual Result tick(AnyFollower<Space>& follower) noexcept = 0;
-  virtual Result tick(TargetFilter<Space>& filter) noexcept = 0;
+  /// One tick with a source of references: a Reference, a path, a filter, or StackReferences.
+  template <typename Source>
+  Result tick(Source&& source) noexcept {
+    const auto ahead_of = [&](double seconds) noexcept { return source_ahead(source, seconds); };
+    const Result result = advance(TickReferences<Space>::of(ahead_of, dt_));
+    advance_source(source, dt_, stopping_);
+    return result;
+  }
+  virtual Result advance(const TickReferences<Space>& references) noexcept = 0;
   /// Throws std::invalid_argument if the scheme is of velocity level.
   [[nodiscard]] virtual Result resolve_measured(const State<kDynamic>& measured, const Reference<Space>& reference) = 0;
 
+  /// Of a stack; without an effect and false for a single task.
+  virtual bool enable(int level, bool on) noexcept = 0;
+  virtual bool reorder(const std::array<int, AnyStack::kLevels>& order) noexcept = 0;
   virtual void stop() noexcept = 0;
   virtual void resume() noexcept = 0;
 
-  [[nodiscard]] virtual const AnyArmFor<Space>& arm() const noexcept = 0;
+  [[nodiscard]] virtual const typename TrackedArm<Space>::type& arm() const noexcept = 0;
   [[nodiscard]] virtual const State<kDynamic>& state() const noexcept = 0;
   [[nodiscard]] virtual const JointVector& acceleration() const noexcept = 0;
   [[nodiscard]] virtual const JointVector& acceleration_change() const noexcept = 0;
@@ -50,13 +76,14 @@ class AnyTracker {
   [[nodiscard]] virtual Reference<Space> corrected(const Reference<Space>& reference) const noexcept = 0;
   virtual Status finish(const Reference<Space>& now, const TickReferences<Space>& references,
                         const JointVector& u) noexcept = 0;
-  virtual Status advance(const TickReferences<Space>& references) noexcept = 0;
+
+ protected:
+  double dt_;
+  bool stopping_ = false;
 };
 
-/// The arguments of a tracker, apart from its scheme.
-template <typename Space>
+/// The arguments of a tracker, apart from its arm and scheme.
 struct TrackerStart {
-  const AnyArmFor<Space>& arm;
   const State<kDynamic>& start;
   const TrackerOptions<>& options;
   const JointLimits<kDynamic>& limits;
@@ -64,9 +91,10 @@ struct TrackerStart {
   const AnyBounds& bounds;
 };
 
-/// The tracker. Throws std::invalid_argument if scheme, start, options, limits or bounds do not fit, as
-/// fpbm::Tracker does. Compiled once, in tracker.cpp.
+/// The tracker. Throws std::invalid_argument if scheme, start, options, limits or bounds do not fit, as fpbm::Tracker
+/// and fpbm::stack_tracker() do. Compiled once, in tracker.cpp and stack_tracker.cpp.
 template <typename Space>
-std::unique_ptr<AnyTracker<Space>> make_tracker(const Scheme& scheme, const TrackerStart<Space>& from);
+std::unique_ptr<AnyTracker<Space>> make_tracker(const typename TrackedArm<Space>::type& arm, const Scheme& scheme,
+                                                const TrackerStart& from);
 
 }  // namespace fpbm::bindings

@@ -28,8 +28,8 @@ RolloutResult<Tracker::N, Scalar> track(Tracker& tracker, Follower& follower, co
     tracker.arm().kinematics(state.q, kinematics);
     const auto tick = tracker.tick(follower);
     result = {worse(result.status, tick.status), grid.time(k), state, k + 1};
-    const Sample<Space, N, Scalar> sample{k,         result.time, state.q,     state.qd, tick.qdd, kinematics.tip,
-                                          reference, tick.error,  kinematics.J};
+    const Sample<Space, N, Scalar> sample{
+        k, result.time, state.q, state.qd, tick.qdd, kinematics.tip, reference, tick.error, first_rows(kinematics)};
     const auto with_tick = [&](const auto& at) { return record(at, tick); };
     if (!show(with_tick, sample)) break;
   }

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "stack_tasks.hpp"
+#include "tracker.hpp"
+
+namespace fpbm::bindings {
+
+/// The references of a stack in a tick: a task with a source follows the source; each other task follows its last
+/// target.
+class StackReferences {
+ public:
+  using Space = AnyStack::Space;
+  /// A path or a filter.
+  using Source =
+      std::variant<AnyFollower<Position<3>>*, AnyFollower<Pose>*, TargetFilter<Position<3>>*, TargetFilter<Pose>*>;
+  using Sources = std::vector<std::pair<const StackTask*, Source>>;
+  using Targets = std::vector<std::pair<const StackTask*, StackTarget>>;
+
+  /// The targets of the plan or, without a target, the points of `tip`.
+  StackReferences(const StackPlan& plan, const AnyStack::Point& tip);
+  StackReferences(const StackReferences&) = delete;  // Sources point to tasks of the plan.
+  StackReferences& operator=(const StackReferences&) = delete;
+
+  /// Sets the targets and the sources of the given tasks; all other tasks keep their last target, at rest.
+  void set(const Targets& targets, Sources sources);
+  /// The references after `seconds` [s] of the tick.
+  [[nodiscard]] Reference<Space> ahead(double seconds) const noexcept;
+  /// The references of the sources after `seconds` become the targets. Returns all targets.
+  const Reference<Space>& take(double seconds) noexcept;
+  /// After a tick of dt [s].
+  friend void advance_source(StackReferences& references, double dt, bool stopping) noexcept {
+    references.advance(dt, stopping);
+  }
+
+  /// The new level k is the old level order[k], with its targets. tip: points of the tasks in the new order.
+  void reorder(const std::array<int, AnyStack::kLevels>& order, const AnyStack::Point& tip) noexcept;
+
+  [[nodiscard]] const StackPlan& plan() const noexcept { return plan_; }
+
+ private:
+  void advance(double dt, bool stopping) noexcept;
+  [[nodiscard]] StackTarget target_of(const StackTask& task) const noexcept;
+
+  StackPlan plan_;
+  Reference<Space> held_;
+  Sources sources_;
+};
+
+}  // namespace fpbm::bindings
