@@ -156,7 +156,9 @@ void expect_all_near_pairs() {
         near.set_posture(clearance, q);
         clearance.place(q, placed);
         near.set_displacements(clearance, (random.uniform(0.0, 0.1) * Joints::Ones(joints)).template cast<Scalar>());
-        const auto needs = [&](const ShapePair& pair) { return clearance.margin() + near.displacement_of(pair); };
+        const auto needs = [&](const ShapePair& pair) {
+          return clearance.margin() + near.displacement_of(clearance, pair);
+        };
         std::vector<std::size_t> found;
         near.each(clearance, needs, [&](std::size_t i, const Nearest<Scalar>& nearest) {
           EXPECT_EQ(nearest.distance, clearance.nearest_of(placed, clearance.pairs()[i]).distance);

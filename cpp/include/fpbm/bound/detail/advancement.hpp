@@ -51,7 +51,7 @@ class Advancement {
     near.set_displacements(shapes, motion.displacement.line.cwiseAbs() + motion.displacement.deviation, time);
     const auto needs = [&](const ShapePair& pair) noexcept {
       const bool skipped = pairs == Pairs::kStatic && near.obstacle_displacement(pair) > Scalar(0);
-      return skipped ? -std::numeric_limits<Scalar>::infinity() : shapes.margin() + near.displacement_of(pair);
+      return skipped ? -std::numeric_limits<Scalar>::infinity() : shapes.margin() + near.displacement_of(shapes, pair);
     };
     bounds_.begin();
     Scalar remaining(1);

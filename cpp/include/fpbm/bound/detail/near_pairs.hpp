@@ -14,8 +14,8 @@ namespace fpbm {
 /// pairs").
 ///
 /// A lower bound on the distance of each pair is kept from tick to tick. From one posture to the next, this bound
-/// decreases by the displacement bounds of both shapes, Σ_k r_k |Δq_k| with the levers r_k. A distance is computed
-/// again only if its lower bound is too small.
+/// decreases by the displacement bounds of two bodies, each at most Σ_k r_k |Δq_k| with the largest levers r_k of any
+/// body. A distance is computed again only if its lower bound is too small.
 template <typename Shapes>
 class NearPairs {
  public:
@@ -29,10 +29,12 @@ class NearPairs {
         lower_bound_(shapes.pairs().size(), -kUnbounded),
         nearest_(shapes.pairs().size()),
         is_known_(shapes.pairs().size(), 0),
-        displacement_(shapes.bodies().size(), Scalar(0)),
+        levers_(filled<AllJoints>(shapes.robot().joints())),
+        most_(levers_),
         obstacle_displacement_(shapes.obstacles().size(), Scalar(0)),
         obstacle_moves_(shapes.obstacles().size(), 0) {
     here_.state.q = filled<JointVector>(shapes.robot().dof());
+    for (const auto& body : shapes.bodies()) levers_ = levers_.cwiseMax(body.levers);
   }
 
   /// The bodies in the posture of set_posture().
@@ -40,32 +42,31 @@ class NearPairs {
 
   /// Computes the bodies in a posture, which need not be near the previous posture.
   void set_posture(const Shapes& shapes, const JointVector& q) noexcept {
-    set_displacements(shapes, shapes.robot().drives().rates(JointVector(q - here_.state.q)).cwiseAbs());
+    const AllJoints moved = shapes.robot().drives().rates(JointVector(q - here_.state.q)).cwiseAbs();
+    const Scalar change = Scalar(2) * levers_.dot(moved);
     // The sum over n joints has a relative error of at most (n/2) ε, and each addition a relative error of ε/2: 4 ε for
     // 7 joints. NearPairs.are_those_of_the_distances_in_float compares the near pairs with the pairs found by distances
     // alone.
     constexpr Scalar kRoundOff = Scalar(4) * std::numeric_limits<Scalar>::epsilon();
-    for (std::size_t i = 0; i < lower_bound_.size(); ++i) {
-      const ShapePair& pair = shapes.pairs()[i];
-      const Scalar change = displacement_[pair.first] + (pair.world ? Scalar(0) : displacement_[pair.second]);
-      lower_bound_[i] -= change + kRoundOff * (std::abs(lower_bound_[i]) + change);
-      if (pair.world && shapes.obstacles()[pair.second].moves != obstacle_moves_[pair.second]) {
-        lower_bound_[i] = -kUnbounded;
+    const Scalar most = change + kRoundOff * change;
+    for (Scalar& bound : lower_bound_) bound -= most + kRoundOff * std::abs(bound);
+    std::fill(is_known_.begin(), is_known_.end(), 0);
+    for (std::size_t k = 0; k < obstacle_moves_.size(); ++k) {
+      if (shapes.obstacles()[k].moves == obstacle_moves_[k]) continue;
+      obstacle_moves_[k] = shapes.obstacles()[k].moves;
+      for (std::size_t i = 0; i < lower_bound_.size(); ++i) {
+        const ShapePair& pair = shapes.pairs()[i];
+        if (pair.world && pair.second == k) lower_bound_[i] = -kUnbounded;
       }
-      is_known_[i] = 0;
     }
-    for (std::size_t i = 0; i < obstacle_moves_.size(); ++i) obstacle_moves_[i] = shapes.obstacles()[i].moves;
     shapes.place(q, here_);
   }
 
-  /// Sets the displacement bounds of bodies and obstacles. Joint k moves by at most most(k) [rad or m]. Obstacles move
+  /// Sets the displacements of joints and obstacles. Joint k moves by at most most(k) [rad or m]. Obstacles move
   /// with their velocities for `time` [s].
   void set_displacements(const Shapes& shapes, const AllJoints& most, Scalar time = Scalar(0)) noexcept {
-    Scalar by_joints(0);
-    for (std::size_t i = 0; i < displacement_.size(); ++i) {
-      displacement_[i] = shapes.bodies()[i].levers.dot(most);
-      by_joints = std::max(by_joints, displacement_[i]);
-    }
+    most_ = most;
+    const Scalar by_joints = levers_.dot(most);
     largest_ = Scalar(2) * by_joints;
     for (std::size_t i = 0; i < obstacle_displacement_.size(); ++i) {
       const auto& velocity = shapes.obstacles()[i].velocity;
@@ -74,11 +75,11 @@ class NearPairs {
     }
   }
   /// Sum of the displacement bounds of both shapes of a pair [m].
-  [[nodiscard]] Scalar displacement_of(const ShapePair& pair) const noexcept {
+  [[nodiscard]] Scalar displacement_of(const Shapes& shapes, const ShapePair& pair) const noexcept {
     const Scalar second = pair.world            ? obstacle_displacement_[pair.second]
-                          : pair.by_second != 0 ? displacement_[pair.second]
+                          : pair.by_second != 0 ? shapes.bodies()[pair.second].levers.dot(most_)
                                                 : 0;
-    return displacement_[pair.first] + second;
+    return shapes.bodies()[pair.first].levers.dot(most_) + second;
   }
   /// Displacement of the second shape of a pair if it is a moving obstacle, otherwise 0 [m].
   [[nodiscard]] Scalar obstacle_displacement(const ShapePair& pair) const noexcept {
@@ -90,11 +91,13 @@ class NearPairs {
   template <typename Needs, typename F>
   [[gnu::always_inline]] void each(const Shapes& shapes, const Needs& needs, const F& f) noexcept {
     const Scalar most = shapes.margin() + largest_;
-    for (std::size_t i = 0; i < lower_bound_.size(); ++i) {
-      if (lower_bound_[i] >= most) continue;
+    const Scalar* const bounds = lower_bound_.data();
+    const std::size_t count = lower_bound_.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      if (bounds[i] >= most) continue;
       const ShapePair& pair = shapes.pairs()[i];
       const Scalar needed = needs(pair);
-      if (lower_bound_[i] >= needed) continue;
+      if (bounds[i] >= needed) continue;
       if (is_known_[i] == 0) {
         const Scalar rough = shapes.distance_lower_bound(here_, pair);
         if (rough >= needed) {
@@ -116,7 +119,8 @@ class NearPairs {
   std::vector<Scalar> lower_bound_;            ///< Lower bound on the distance of each pair [m].
   std::vector<Nearest<Scalar>> nearest_;       ///< Nearest points of each pair with is_known_.
   std::vector<unsigned char> is_known_;        ///< Whether nearest_ is computed for the present posture.
-  std::vector<Scalar> displacement_;           ///< Displacement bound of each body [m].
+  AllJoints levers_;                           ///< Largest lever of any body, for each joint.
+  AllJoints most_;                             ///< Largest displacement of each joint [rad or m].
   std::vector<Scalar> obstacle_displacement_;  ///< Displacement of each obstacle [m].
   std::vector<std::size_t> obstacle_moves_;    ///< Obstacle::moves at the last set_posture().
   Scalar largest_ = Scalar(0);                 ///< Largest displacement_of() of any pair [m].

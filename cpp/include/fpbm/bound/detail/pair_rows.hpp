@@ -38,7 +38,9 @@ class PairRows {
     gaps_.begin(rows.count);
     distance_sum_ = Scalar(0);
     const Eigen::Index before = rows.count;
-    const auto needs = [&](const ShapePair& pair) noexcept { return shapes.margin() + near.displacement_of(pair); };
+    const auto needs = [&](const ShapePair& pair) noexcept {
+      return shapes.margin() + near.displacement_of(shapes, pair);
+    };
     near.each(shapes, needs, [&](std::size_t number, const Nearest<Scalar>&) noexcept {
       const ShapePair& pair = shapes.pairs()[number];
       if (!is_placed) shapes.place(middle, middle_);
