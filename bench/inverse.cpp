@@ -179,6 +179,34 @@ class Arm {
   std::mt19937 engine_{1};
 };
 
+/// Arm of PAL Robotics' TIAGo, from torso_lift_link to arm_tool_link. The numbers are from example-robot-data's
+/// tiago.urdf, with exact right angles.
+fpbm::Chain<> tiago_arm() {
+  using namespace fpbm::presets::arms;
+  const Vector<3> z(0.0, 0.0, 1.0);
+  const auto within = [](double lower, double upper) { return fpbm::JointBounds<>{lower * kDegree, upper * kDegree}; };
+  return chain_of(
+      {
+          {"arm_1_joint", {0.15505, 0.014, -0.151}, {0.0, 0.0, -kRight}, z, within(0.0, 157.5)},
+          {"arm_2_joint", {0.125, 0.0165, -0.031}, {kRight, 0.0, 0.0}, z, within(-90.0, 62.5)},
+          {"arm_3_joint", {0.0895, 0.0, 0.0015}, {-kRight, 0.0, kRight}, z, within(-202.5, 90.0)},
+          {"arm_4_joint", {-0.02, -0.027, -0.222}, {-kRight, -kRight, 0.0}, z, within(-22.5, 135.0)},
+          {"arm_5_joint", {-0.162, 0.02, 0.027}, {0.0, -kRight, 0.0}, z, within(-120.0, 120.0)},
+          {"arm_6_joint", {0.0, 0.0, 0.15}, {0.0, -kRight, -kRight}, z, within(-81.0, 81.0)},
+          {"arm_7_joint", {0.0, 0.0, 0.0}, {kRight, 0.0, kRight}, z, within(-120.0, 120.0)},
+      },
+      placed({0.0, 0.0, 0.046}, {kRight, -kRight, kHalfTurn}));
+}
+
+/// Left arm of a Unitree G1, from the torso to the palm.
+fpbm::Chain<> g1_arm() {
+  const auto tree = fpbm::presets::g1_upper_body();
+  fpbm::Chain<> chain;
+  for (std::size_t i = 3; i < 10; ++i) chain.joints.push_back(tree.joints[i].joint);
+  chain.tip.p = {0.0415, 0.003, 0.0};
+  return chain;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -189,4 +217,6 @@ int main(int argc, char** argv) {
   Arm<7>("gen3", fpbm::presets::gen3(), poses).print();
   Arm<6>("ur5e", fpbm::presets::ur5e(), poses).print();
   Arm<7>("xarm7", fpbm::presets::xarm7(), poses).print();
+  Arm<7>("tiago", tiago_arm(), poses).print();
+  Arm<7>("g1", g1_arm(), poses).print();
 }
