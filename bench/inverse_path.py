@@ -30,6 +30,9 @@ FLANGE = Rotation.from_rotvec([0, 0, np.pi / 4])  # From panda_hand to the flang
 CELL = 0.5  # Size of a cell of the grid, relative to the largest displacement of a joint between two waypoints.
 
 
+ON_BOUND = 0.01  # Largest distance from an end of the range at which a joint counts as on this end [rad].
+
+
 class Part(NamedTuple):
     first: int  # Waypoint.
     motion: Array  # Postures at consecutive waypoints [rad], shape (count, 7).
@@ -98,16 +101,19 @@ def main() -> None:
         parts.append(follow(sum(len(each.motion) for each in parts), times, poses, options, rng))
     seconds = time.process_time() - begin
     print(
-        "| waypoints | postures at a waypoint | peak velocity / bound | largest error [m, rad] | first posture [rad] |"
+        "| waypoints | most postures at a waypoint | peak velocity / bound | largest error [m, rad] "
+        "| first posture [rad] | joints on an end of the range at the last waypoint |"
     )
-    print("|---|---:|---:|---:|---|")
+    print("|---|---:|---:|---:|---|---|")
     for first, motion, most in parts:
         last = first + len(motion) - 1
         velocity = np.abs(np.diff(motion, axis=0)) / np.diff(times[first : last + 1])[:, None]
         peak = (velocity / ARM.limits.velocity).max(initial=0.0)
         largest = max(map(error, motion, poses[first : last + 1]))
         posture = ", ".join(f"{angle:.3f}" for angle in motion[0])
-        print(f"| {first} to {last} | {most} | {peak:.3f} | {largest:.1e} | {posture} |")
+        distance = np.minimum(motion[-1] - ARM.limits.lower, ARM.limits.upper - motion[-1])
+        ends = ", ".join(ARM.joint_names[i] for i in np.flatnonzero(distance < ON_BOUND))
+        print(f"| {first} to {last} | {most} | {peak:.3f} | {largest:.1e} | {posture} | {ends} |")
     print(f"\n{len(poses)} waypoints, {len(parts) - 1} reconfigurations, {seconds:.1f} s of processor time")
 
 
