@@ -164,7 +164,7 @@ inverse: $(VENV)/package $(VENV)/test
 	cmake --preset bench
 	cmake --build --preset bench --target bench_inverse
 	build/bench/bench/bench_inverse
-	$(BIN)/python bench/inverse_peers.py
+	$(BIN)/python bench/inverse_peers.py --write
 
 # Programs of other libraries, compared with programs of this library. Each library is installed into build/stack_peers.
 peers: $(VENV)/package $(VENV)/test

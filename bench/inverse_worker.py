@@ -1,8 +1,9 @@
 """Inverse kinematics by one library. bench/inverse_peers.py runs this file for each library and each arm.
 
 `inverse_worker.py SOLVER PROBLEM.npz ANSWER.npz N C` solves the first N problems of the file on C processor cores.
-The answer file contains the first answer of each call (NaN: no answer), the time [s], and the number of answers. With
-"forward" as SOLVER, this file adds the poses of the answers by Pinocchio. A call has at most 256 starts, or 50 ms.
+The answer file contains the first answer of each call (NaN: no answer), the time [s], and the number of answers. On one
+core, the time is the processor time, which is independent of other processes. With "forward" as SOLVER, this file adds
+the poses of the answers by Pinocchio. A call has at most 256 starts, or 50 ms.
 """
 
 from __future__ import annotations
@@ -318,14 +319,15 @@ class Frankik(Solver):
 def measured(solver: Solver, count: int, cores: int) -> dict[str, Array]:
     """Answers and times of the first problems."""
     problem, before = solver.problem, os.sched_getaffinity(0)
+    now = time.process_time if cores == 1 else time.perf_counter
     q, times, found = np.full(problem.starts[:count].shape, np.nan), np.zeros(count), np.zeros(count)
     os.sched_setaffinity(0, sorted(before)[-cores:])
     solver.solve(*solver.prepare(problem.targets[0], problem.starts[0]))  # Imports and caches.
     for i in range(count):
         given = solver.prepare(problem.targets[i], problem.starts[i])
-        start = time.perf_counter()
+        start = now()
         answers = solver.solve(*given)
-        times[i], found[i] = time.perf_counter() - start, len(answers)
+        times[i], found[i] = now() - start, len(answers)
         if answers:
             q[i] = answers[0]
     os.sched_setaffinity(0, before)
