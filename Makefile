@@ -164,8 +164,9 @@ inverse: $(VENV)/package $(VENV)/test
 	cmake --preset bench
 	cmake --build --preset bench --target bench_inverse
 	build/bench/bench/bench_inverse
-	$(BIN)/python bench/inverse_peers.py
+	$(BIN)/python bench/inverse_peers.py --write
 	$(BIN)/python bench/inverse_problems.py
+	$(BIN)/python bench/inverse_clearance.py
 
 # Programs of other libraries, compared with programs of this library. Each library is installed into build/stack_peers.
 peers: $(VENV)/package $(VENV)/test

@@ -6,7 +6,7 @@ import importlib
 import re
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -19,6 +19,7 @@ import fpbm_cpp as fp
 from fpbm_cpp.obstacle import Obstacle
 
 Array = NDArray[np.float64]
+Pose = Callable[[Array], Array]  # Pose of a tip in a posture.
 
 MARGIN = 0.01
 JERK = 500.0  # Ratio of the bounds on jerk and acceleration, if the manufacturer gives no jerk [1/s]. From Franka.
@@ -35,36 +36,44 @@ class Robot(NamedTuple):
 
 
 class Meshes:
-    """Collision meshes of the links, and obstacles, in Coal. Pinocchio computes the placements, without fpbm_cpp."""
+    """Collision meshes of the links with capsules, and obstacles, in Coal. Pinocchio computes the placements."""
 
-    def __init__(self, urdf: Path, tip: str, arm: fp.SerialArm, clearance: fp.Clearance) -> None:
+    def __init__(self, urdf: Path, joints: Sequence[str], tips: dict[str, Pose], clearance: fp.Clearance) -> None:
+        """The poses of the tips by fpbm_cpp are compared with the poses by Pinocchio."""
         import pinocchio as pin
 
         self.pin = pin
         # Pinocchio represents the position of a continuous joint by a point on a circle. flat_urdf() has only angles.
         model = pin.buildModelFromUrdf(str(urdf))
-        held = [i for i in range(1, model.njoints) if model.names[i] not in arm.joint_names]
+        held = [i for i in range(1, model.njoints) if model.names[i] not in joints]
         geometry = pin.buildGeomFromUrdf(model, str(urdf), pin.GeometryType.COLLISION)
+        kept = {each.name for each in clearance.capsules}
+        for each in geometry.geometryObjects.copy():
+            if model.frames[each.parentFrame].name not in kept:
+                geometry.removeGeometryObject(each.name)
         self.model, self.geometry = pin.buildReducedModel(model, geometry, held, np.zeros(model.nq))
         self.data = self.model.createData()
-        self._require_the_same(arm, tip)
+        for tip, pose in tips.items():
+            self._require_the_same(tip, pose)
         self.hulls = self._hulls()
         objects = self.geometry.geometryObjects
         self.links = [self.model.frames[each.parentFrame].name for each in objects]
-        joint = [each.parentJoint for each in objects]
+        joint, parents = [each.parentJoint for each in objects], self.model.parents
         allowed = {frozenset(pair) for pair in clearance.allowed}
         self.pairs = [
             (i, j)
             for i in range(len(objects))
             for j in range(i)
-            if abs(joint[i] - joint[j]) > 1 and frozenset((self.links[i], self.links[j])) not in allowed
+            if joint[i] not in (joint[j], parents[joint[j]])
+            and joint[j] != parents[joint[i]]
+            and frozenset((self.links[i], self.links[j])) not in allowed
         ]
         self.moving = [i for i in range(len(objects)) if joint[i] > 0]
 
-    def _require_the_same(self, arm: fp.SerialArm, tip: str) -> None:
-        for q in np.random.default_rng(0).uniform(-1, 1, (10, arm.dof)):
+    def _require_the_same(self, tip: str, pose: Pose) -> None:
+        for q in np.random.default_rng(0).uniform(-1, 1, (10, self.model.nq)):
             self.pin.framesForwardKinematics(self.model, self.data, q)
-            off = np.abs(self.data.oMf[self.model.getFrameId(tip)].homogeneous - arm.forward(q)).max()
+            off = np.abs(self.data.oMf[self.model.getFrameId(tip)].homogeneous - pose(q)).max()
             if off > 1e-9:
                 raise SystemExit(f"{tip}: the pose differs from the pose by Pinocchio by {off:.1e}")
 
@@ -186,7 +195,7 @@ def robot(name: str) -> Robot:
         clearance = fp.Clearance.from_urdf(given, source.tip, srdf=srdf if srdf.exists() else None, margin=MARGIN)
         clearance = replace(clearance, allowed=[*clearance.allowed, *source.never_collide])
         arm = fp.SerialArm.from_urdf(given, source.tip)
-        meshes = Meshes(flat, source.tip, arm, clearance)
+        meshes = Meshes(flat, arm.joint_names, {source.tip: arm.forward}, clearance)
     limits = fp.SerialArm.preset(name).limits
     jerk = np.where(np.isfinite(limits.jerk), limits.jerk, JERK * limits.acceleration)
     return Robot(name, arm, replace(limits, jerk=jerk), clearance, meshes)

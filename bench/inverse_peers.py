@@ -7,19 +7,24 @@ the Debian package python3-pykdl, and is missing if the version of Python is not
 
 A problem is solved if the first answer has errors of at most 1e-6 m and 1e-6 rad by the forward kinematics of fpbm_cpp
 and of Pinocchio, and all angles are inside the joint ranges. Ranges of [-pi, pi] are modulo 2 pi. The times are of
-single calls, also of calls without an answer. Each process uses one processor core, except in rows with "2 cores".
+single calls, also of calls without an answer.
 "Wrong": answers that the library returns as solutions, and that fail the check. "Answers": median number per call.
+
+With --write, results/inverse_peers.json stores quantiles of the times, and inverse_chart.py draws the share of problems
+that each library solves within a time.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import re
 import subprocess
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+import inverse_chart
 import numpy as np
 from inverse_worker import Array, Ours, Problem, measured
 from stack_peers import HERE, Environment, call, processor, table
@@ -63,7 +68,7 @@ ROWS = {
     "KDL, NR_JL": Row("kdl", "KdlNewton", most=100),
     "Pinocchio, loop in Python": Row("pin", "Pinocchio"),
     "roboplan, SimpleIk": Row("roboplan", "Roboplan"),
-    "IKPy": Row("ikpy", "IkPy", most=20),
+    "IKPy": Row("ikpy", "IkPy", most=100),
     "EAIK": Row("eaik", "Eaik", ("ur5e",)),
     "ssik, nearest answer": Row("ssik", "Ssik"),
     "ssik, all answers": Row("ssik", "SsikAll"),
@@ -127,8 +132,8 @@ def errors(poses: Array, targets: Array) -> Array:
     return larger
 
 
-def row(name: str, given: Problem, answers: dict[str, Array]) -> list[str]:
-    """Check the answers, also the poses by Pinocchio if the answers have these poses."""
+def solved(given: Problem, answers: dict[str, Array]) -> Array:
+    """Whether each answer is right, also by the poses by Pinocchio if the answers have these poses."""
     count, answered = len(answers["q"]), np.isfinite(answers["q"]).all(axis=1)
     q, targets = given.wrapped(answers["q"])[answered], given.targets[:count][answered]
     arm = fp.SerialArm.preset(given.name)
@@ -136,15 +141,27 @@ def row(name: str, given: Problem, answers: dict[str, Array]) -> list[str]:
     right &= errors(np.reshape([arm.forward(each) for each in q], (-1, 4, 4)), targets) <= TOLERANCE
     if "poses" in answers:
         right &= errors(answers["poses"][answered], targets) <= TOLERANCE
-    times = 1e6 * answers["times"]
+    answered[answered] = right
+    return answered
+
+
+def row(name: str, answers: dict[str, Array], right: Array) -> list[str]:
+    times, answered = 1e6 * answers["times"], np.isfinite(answers["q"]).all(axis=1)
     return [
         name,
-        f"{count}",
-        f"{100 * right.sum() / count:.1f}",
-        f"{(~right).sum()}",
+        f"{len(times)}",
+        f"{100 * right.sum() / len(times):.1f}",
+        f"{(answered & ~right).sum()}",
         *(f"{value:.1f}" for value in (times.mean(), np.median(times), np.percentile(times, 99))),
         f"{np.median(answers['found'][answered]) if answered.any() else 0:.0f}",
     ]
+
+
+def curve(answers: dict[str, Array], right: Array) -> dict[str, Any]:
+    """The share of solved problems, and the percentiles of the times of these problems [µs]."""
+    times = 1e6 * answers["times"][right]
+    percentiles = np.percentile(times, np.arange(101)) if len(times) else []
+    return {"problems": len(right), "solved": right.mean(), "percentiles": [round(each, 2) for each in percentiles]}
 
 
 def reason(error: subprocess.SubprocessError) -> str:
@@ -159,6 +176,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--arms", nargs="*", default=ARMS, metavar="ARM")
     parser.add_argument("--skip", nargs="*", default=[], metavar="ENVIRONMENT", help=", ".join(PACKAGES))
+    parser.add_argument("--write", action="store_true", help=f"also write {inverse_chart.FILE.name} and its figure")
     parser.add_argument(
         "--work", type=Path, default=HERE.parent / "build" / "inverse_peers", help="for installed peers"
     )
@@ -191,25 +209,33 @@ def main() -> None:
         np.savez(given.path.with_name(f"{given.name}_answers.npz"), allow_pickle=False, **answers)
         return run("pin", "forward", given, len(answers["q"]))
 
-    print(f"{processor()}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}, {options.count} problems of each arm")
+    machine = f"{processor()}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}"
+    print(f"{machine}, {options.count} problems of each arm")
     try:
         versions.append("kdl: " + call("dpkg-query", "--show", "python3-pykdl").strip().replace("\t", " "))
     except (subprocess.SubprocessError, OSError) as error:
         missing.append(f"python3-pykdl: {error}")
     print("\n".join(versions))
+    curves: dict[str, dict[str, Any]] = {}
     for arm in options.arms:
         given = problem(folder / "problems", arm, options.count, options.seed)
-        rows = [row("fpbm_cpp", given, checked(given, solve_ours(given)))] if hasattr(fp.SerialArm, "inverse") else []
+        found = {"fpbm_cpp": checked(given, solve_ours(given))}
         for name, each in ROWS.items():
             if arm not in each.arms or each.environment not in environments:
                 continue
             try:
                 answers = run(each.environment, each.solver, given, min(each.most, options.count), each.cores)
-                rows.append(row(name, given, checked(given, answers)))
+                found[name] = checked(given, answers)
             except subprocess.SubprocessError as error:
                 missing.append(f"{name}, {arm}: {reason(error)}")
+        right = {name: solved(given, answers) for name, answers in found.items()}
+        rows = [row(name, answers, right[name]) for name, answers in found.items()]
+        curves[arm] = {name: curve(answers, right[name]) for name, answers in found.items()}
         print("\n".join([f"\n{arm}", *table(HEADS, rows)[:-1]]), flush=True)
     print("\n".join(f"Missing: {each}" for each in missing))
+    if options.write:
+        inverse_chart.FILE.write_text(json.dumps({"machine": machine, "versions": versions, "arms": curves}) + "\n")
+        inverse_chart.draw()
 
 
 if __name__ == "__main__":

@@ -163,7 +163,16 @@ class AxisTask(FrameTask):
     """Direction of an axis of a frame: 2 rows. The rotation about the axis is free. Point: shape (3,)."""
 
     kind = "axis"
-    axis: ArrayField = parameter("Axis in the frame; its length is ignored.", default=(0, 0, 1), shape="(3,)")
+    axis: ArrayField | str = parameter(
+        "Axis in the frame, 'x', 'y', 'z' or a vector; its length is ignored.", default=(0, 0, 1), shape="(3,)"
+    )
+
+    def __post_init__(self) -> None:
+        if isinstance(self.axis, str):
+            if self.axis not in POSITION:
+                raise not_one_of("axis", self.axis, POSITION)
+            object.__setattr__(self, "axis", [float(row == self.axis) for row in POSITION])
+        super().__post_init__()
 
     def _finish(self) -> None:
         super()._finish()

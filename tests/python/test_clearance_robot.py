@@ -109,6 +109,33 @@ def test_no_contact_of_two_arms_driven_together(fault: bool, tmp_path: Path) -> 
         assert mesh >= clearance.margin  # Capsules contain the meshes.
 
 
+@with_robots
+@pytest.mark.parametrize("bounded", [True, False], ids=["bounded", "without bounds"])
+def test_postures_of_two_hands_are_clear_of_meshes(bounded: bool, tmp_path: Path) -> None:
+    """The targets are poses of random postures without contact; Coal measures the meshes."""
+    coal = pytest.importorskip("coal")
+    pytest.importorskip("trimesh")
+    robot, clearance, urdf = fitted_two_arms(tmp_path)
+    bodies = two_arms.Bodies(coal, urdf, robot, [TABLE], {frozenset(pair) for pair in clearance.allowed})
+    frames = {side: f"{side}_panda_hand_tcp" for side in two_arms.SIDES}
+    stack = fp.Stack([fp.PoseTask(frame, name=side) for side, frame in frames.items()])
+    inverse = fp.InverseKinematics(robot, stack=stack, bounds=[clearance] if bounded else (), starts=256)
+    rng, targets, contacts = np.random.default_rng(9), 0, 0
+    while targets < 60:
+        q = rng.uniform(robot.limits.lower, robot.limits.upper)
+        nearest = clearance.nearest(robot, q)
+        assert nearest is not None
+        if nearest.distance < clearance.margin:
+            continue
+        targets += 1
+        found = inverse.solve({side: robot.forward(q, frame) for side, frame in frames.items()})
+        assert found.solved
+        distance, pair = bodies.nearest(found.q, 0.02)
+        assert distance >= clearance.margin or not bounded, pair  # Capsules contain the meshes.
+        contacts += distance <= 0
+    assert bounded == (contacts == 0)
+
+
 # Presets and arms
 
 PANDA = fp.SerialArm.preset("panda")

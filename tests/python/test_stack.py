@@ -284,6 +284,7 @@ def test_stacks_are_values():
     assert stack != fp.Stack(fp.PositionTask())
     assert [task.name for task in stack.tasks] == ["upright", "place", "elbow", "posture"]
     assert replace(fp.PoseTask(), name="grasp").name == "grasp"
+    assert fp.AxisTask(axis="y") == fp.AxisTask(axis=(0, 1, 0))
 
 
 @pytest.mark.parametrize(
@@ -299,6 +300,7 @@ def test_stacks_are_values():
         (lambda: fp.PoseTask(axes="tool"), "axes = 'tool'"),
         (lambda: fp.PositionTask(k2=-1), "k2 = -1"),
         (lambda: fp.AxisTask(axis=(0, 0, 0)), "axis = 0"),
+        (lambda: fp.AxisTask(axis="up"), "axis = 'up': must be one of x, y, z"),
         (lambda: fp.PostureTask(joints=()), "joints"),
         (lambda: fp.PostureTask(joints=2), "joints = 2: must be names of joints, each once"),
         (lambda: fp.PostureTask(joints=[0, 2]), "must be names of joints"),
