@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <type_traits>
 #include <variant>
@@ -148,8 +149,7 @@ RolloutResult<kDynamic> Motion<Space>::track(const LimitOptions& limit_options, 
 template <typename Space>
 RolloutResult<kDynamic> Motion<Space>::simulate_stack(const Output<Space>& output) const {
   TaskRecorder<Space> record(*this, output, scheme.level);
-  const auto result =
-      rollout_of_stack(stack->plan, {*stack}, scheme, start, grid, [&](const auto& sample) { return record(sample); });
+  const auto result = rollout_of_stack(stack->plan, {*stack}, scheme, start, grid, std::ref(record));
   record.finish();
   return result;
 }
