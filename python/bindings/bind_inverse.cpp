@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <functional>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -23,6 +26,7 @@ namespace {
 /// A posture in Python.
 struct PyPosture {
   AnyPosture found;
+  std::optional<double> rank_value = {};  ///< Set by PyInverse::solve_all().
 };
 
 /// Postures for several targets.
@@ -123,6 +127,7 @@ struct StackTargets {
 
   std::unique_ptr<PostureSolver<Space>> solver;
   StackPlan plan;
+  Clearance<kDynamic> clearance;
   bool is_tip = false;
 
   [[nodiscard]] std::optional<py::ssize_t> count(const py::object& given) const {
@@ -204,7 +209,8 @@ std::unique_ptr<PostureSolver<Pose>> in_lanes(const Arm& arm, const InverseOptio
 
 StackTargets stack_targets(const Model& model, const StackPlan& plan, const InverseOptions<>& options,
                            const JointLimits<kDynamic>& limits, const py::object& bounds, bool is_tip) {
-  return {posture_solver(model.tree, plan.velocity, options, limits, bounds_of(model, bounds)), plan, is_tip};
+  AnyBounds all = bounds_of(model, bounds);
+  return {posture_solver(model.tree, plan.velocity, options, limits, all), plan, all.clearance(), is_tip};
 }
 
 AnyTargets targets_of(const Model& model, const std::string& task, const py::object& stack,
@@ -247,31 +253,34 @@ class PyInverse {
         any_);
   }
 
-  /// Distinct postures, the nearest to the start first.
+  /// Distinct postures, sorted by rank. Postures with equal values are sorted by the distance from the start.
   [[nodiscard]] std::vector<PyPosture> solve_all(const py::object& target, const OptionalArray& start,
-                                                 std::size_t count) {
+                                                 std::size_t count, const std::string& rank) {
     const std::vector<JointVector> starts{start_of(start)};
     const JointVector& q0 = starts[0];
-    std::vector<AnyPosture> found;
+    std::vector<PyPosture> found;
     std::visit(
         [&](auto& of) {
+          const auto value = value_of(of, rank, q0);
           const auto points = of.read(target, std::nullopt, starts);
           const py::gil_scoped_release others_may_run;
           const std::lock_guard lock(mutex_);
           of.solver->search(points[0], q0, [&](const AnyPosture& posture) {
-            if (std::none_of(found.begin(), found.end(), [&](const auto& known) { return is_same(known, posture); })) {
-              found.push_back(posture);
+            if (std::none_of(found.begin(), found.end(),
+                             [&](const auto& known) { return is_same(known.found, posture); })) {
+              found.push_back({posture, value(posture.q)});
             }
             return false;
           });
         },
         any_);
-    std::sort(found.begin(), found.end(),
-              [&](const auto& a, const auto& b) { return (a.q - q0).norm() < (b.q - q0).norm(); });
-    if (found.size() > count) found.resize(count);
-    std::vector<PyPosture> result;
-    for (const AnyPosture& each : found) result.push_back({each});
-    return result;
+    const double sign = rank == "distance" ? 1.0 : -1.0;
+    const auto place = [&](const PyPosture& one) {
+      return std::pair(sign * *one.rank_value, (one.found.q - q0).norm());
+    };
+    std::sort(found.begin(), found.end(), [&](const auto& a, const auto& b) { return place(a) < place(b); });
+    if (found.size() > count) found.erase(found.begin() + static_cast<std::ptrdiff_t>(count), found.end());
+    return found;
   }
 
  private:
@@ -288,6 +297,32 @@ class PyInverse {
       if (difference > kSame && !turned) return false;
     }
     return true;
+  }
+
+  /// Smallest distance from an end of a range, as a fraction of the range. Joints without two ends do not count.
+  [[nodiscard]] double range_gap(const JointVector& q) const noexcept {
+    double least = std::numeric_limits<double>::infinity();
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      const double range = limits_.upper(i) - limits_.lower(i);
+      const bool counts = range > 0.0 && std::isfinite(range);
+      if (counts) least = std::min(least, std::min(q(i) - limits_.lower(i), limits_.upper(i) - q(i)) / range);
+    }
+    return least;
+  }
+  /// The value of a posture by which solve_all() ranks. Throws std::invalid_argument.
+  template <typename Targets_>
+  [[nodiscard]] std::function<double(const JointVector&)> value_of(const Targets_& of, const std::string& rank,
+                                                                   const JointVector& start) const {
+    if (rank == "distance") return [&](const JointVector& q) { return (q - start).norm(); };
+    if (rank == "manipulability") return [&](const JointVector& q) { return of.solver->manipulability(q); };
+    if (rank == "ranges") return [this](const JointVector& q) { return range_gap(q); };
+    if (rank != "clearance") {
+      validation::reject("rank", " = '" + rank + "': must be 'distance', 'manipulability', 'ranges' or 'clearance'");
+    }
+    if constexpr (std::is_same_v<Targets_, StackTargets>) {
+      if (!of.clearance.empty()) return [&](const JointVector& q) { return nearest_at(of.clearance, q)->distance; };
+    }
+    validation::reject("rank", " = 'clearance': needs a Clearance that checks a pair: give bounds=[fp.Clearance(…)]");
   }
 
   /// The start, or the middle of the ranges.
@@ -403,6 +438,7 @@ void bind_postures(py::module_& m) {
           "status", [](const PyPosture& self) { return self.found.status; }, "OK or NOT_FOUND.")
       .def_property_readonly(
           "starts", [](const PyPosture& self) { return self.found.starts; }, "Number of start postures used.")
+      .def_readonly("rank_value", &PyPosture::rank_value, "The value by which inverse_all ranks; otherwise None.")
       .def("__repr__", [](const PyPosture& self) {
         const std::string state = self.found.solved() ? "solved" : "not found";
         return "<Posture " + state + ", error " + py::cast<std::string>(py::str(py::float_(self.found.error))) +
@@ -428,6 +464,7 @@ void bind_inverse(py::module_& m) {
   const auto tolerance = py::arg("tolerance") = InverseOptions<>().tolerance;
   const auto starts = py::arg("starts") = InverseOptions<>().starts;
   const auto seed = py::arg("seed") = InverseOptions<>().seed;
+  const auto rank = py::arg("rank") = "distance";
 
   py::class_<PyInverse, std::shared_ptr<PyInverse>>(
       m, "InverseKinematics", R"(Postures for targets, within the ranges of the joints: inverse kinematics.
@@ -474,7 +511,12 @@ dictionary by task name. With a leading axis of K entries, K targets, which are 
 posture from which the search starts, shape (n,) or (K, n), moved into the ranges; by default, the middle of the ranges.
 A target that is not reached raises nothing: see Posture.solved.)")
       .def("solve_all", &PyInverse::solve_all, py::arg("target"), py::arg("start") = none, py::arg("count") = 16,
-           "Up to `count` distinct postures for a target, the nearest to the start first, from all start postures.");
+           py::kw_only(), rank,
+           R"(Up to `count` distinct postures for a target, from all start postures, sorted by rank.
+
+rank: 'distance', the nearest to the start first; 'manipulability', the largest sqrt(det(J J')) of the task or of the
+first level of the stack; 'ranges', the largest distance from the ends of the ranges, as a fraction of the range;
+'clearance', the largest distance of the nearest checked pair, which needs a Clearance in bounds.)");
 
   auto model = py::reinterpret_borrow<py::class_<Model>>(m.attr("Model"));
   model.def(
@@ -489,15 +531,15 @@ A target that is not reached raises nothing: see Posture.solved.)")
   model.def(
       "inverse_all",
       [](const Model& self, const py::object& target, const OptionalArray& start, std::size_t count,
-         const std::string& task_, const py::object& stack_, const py::object& limits_, const py::object& bounds_,
-         double tolerance_, int starts_, std::uint32_t seed_) {
+         const std::string& rank_, const std::string& task_, const py::object& stack_, const py::object& limits_,
+         const py::object& bounds_, double tolerance_, int starts_, std::uint32_t seed_) {
         return solver_of(self, task_, stack_, limits_, bounds_, tolerance_, starts_, seed_)
-            ->solve_all(target, start, count);
+            ->solve_all(target, start, count, rank_);
       },
-      py::arg("target"), py::arg("start") = none, py::arg("count") = 16, py::kw_only(), task, stack, limits, bounds,
-      tolerance, py::arg("starts") = 256, seed,
-      "Distinct postures for a target, the nearest to the start first: InverseKinematics(arm, ...).solve_all(target, "
-      "start, count).");
+      py::arg("target"), py::arg("start") = none, py::arg("count") = 16, py::kw_only(), rank, task, stack, limits,
+      bounds, tolerance, py::arg("starts") = 256, seed,
+      "Distinct postures for a target, sorted by rank: InverseKinematics(arm, ...).solve_all(target, start, "
+      "count, rank=rank).");
 }
 
 }  // namespace fpbm::bindings

@@ -27,6 +27,7 @@ class PostureSolver {
   virtual void search(const Point& target, const JointVector& start, const Found& found) noexcept = 0;
   /// Points of the tasks in a posture.
   [[nodiscard]] virtual Point tip(const JointVector& q) const noexcept = 0;
+  [[nodiscard]] virtual double manipulability(const JointVector& q) const noexcept = 0;
   [[nodiscard]] virtual std::unique_ptr<PostureSolver> clone() const = 0;
 };
 
@@ -48,6 +49,9 @@ class PostureSolverOf final : public PostureSolver<Space> {
   }
   [[nodiscard]] Point tip(const JointVector& q) const noexcept override {
     return inverse_.tip(typename Inverse::JointVector(q));
+  }
+  [[nodiscard]] double manipulability(const JointVector& q) const noexcept override {
+    return inverse_.manipulability(typename Inverse::JointVector(q));
   }
   [[nodiscard]] std::unique_ptr<PostureSolver<Space>> clone() const override {
     return std::make_unique<PostureSolverOf>(inverse_);

@@ -94,6 +94,7 @@ class Model:
         start: numpy.typing.ArrayLike | None = None,
         count: typing.SupportsInt | typing.SupportsIndex = 16,
         *,
+        rank: str = "distance",
         task: str = "pose",
         stack: typing.Any = None,
         limits: typing.Any = None,
@@ -103,7 +104,7 @@ class Model:
         seed: typing.SupportsInt | typing.SupportsIndex = 0,
     ) -> list[Posture]:
         """
-        Distinct postures for a target, the nearest to the start first: InverseKinematics(arm, ...).solve_all(target, start, count).
+        Distinct postures for a target, sorted by rank: InverseKinematics(arm, ...).solve_all(target, start, count, rank=rank).
         """
     @property
     def dof(self) -> int:
@@ -881,6 +882,11 @@ class Posture:
         The posture, or the nearest posture found [rad], or [m] for a prismatic joint, shape (n,).
         """
     @property
+    def rank_value(self) -> float | None:
+        """
+        The value by which inverse_all ranks; otherwise None.
+        """
+    @property
     def solved(self) -> bool:
         """
         Whether the target is reached within the tolerance, the ranges and the bounds.
@@ -984,9 +990,15 @@ class InverseKinematics:
         target: typing.Any,
         start: numpy.typing.ArrayLike | None = None,
         count: typing.SupportsInt | typing.SupportsIndex = 16,
+        *,
+        rank: str = "distance",
     ) -> list[Posture]:
         """
-        Up to `count` distinct postures for a target, the nearest to the start first, from all start postures.
+        Up to `count` distinct postures for a target, from all start postures, sorted by rank.
+
+        rank: 'distance', the nearest to the start first; 'manipulability', the largest sqrt(det(J J')) of the task or of the
+        first level of the stack; 'ranges', the largest distance from the ends of the ranges, as a fraction of the range;
+        'clearance', the largest distance of the nearest checked pair, which needs a Clearance in bounds.
         """
 
 def advice(status: Status) -> str:

@@ -196,7 +196,7 @@ class Driven {
     seconds_since_call_ = 0.0;
   }
 
-  std::unique_ptr<controller_interface::ControllerInterface> controller_ = exported_controller();
+  std::unique_ptr<controller_interface::ControllerInterface> controller_ = exported_plugin();
   JointLimits limits_;
   std::deque<Joints> past_;
   Joints last_{};

@@ -98,7 +98,7 @@ class Controller {
   std::vector<double> q{0.1, -0.9, 0.2, -1.5, 0.3, 1.2, 0.4};
 
  private:
-  std::unique_ptr<controller_interface::ControllerInterface> controller_ = stand_in::exported_controller();
+  std::unique_ptr<controller_interface::ControllerInterface> controller_ = stand_in::exported_plugin();
   std::vector<stand_in::Lock> locks_;
 };
 

@@ -1,6 +1,6 @@
-# Configures fpbm_controllers with stand-ins for the packages of ROS and for an installed fpbm. The headers of the
+# Configures a package with stand-ins for the packages of ROS and for an installed fpbm. The headers of the
 # repository must precede the installed headers.
-#   -DSOURCE=…/ros2/fpbm_controllers
+#   -DSOURCE=folder of the package
 #   -DBUILD=folder that this script replaces
 file(REMOVE_RECURSE ${BUILD})
 set(packages ${BUILD}/packages)
@@ -11,7 +11,7 @@ foreach(name IN ITEMS controller_interface fpbm hardware_interface pluginlib rcl
     set(${name}_FOUND TRUE)")
   file(MAKE_DIRECTORY ${packages}/installed_${name})
 endforeach()
-foreach(name IN ITEMS diagnostic_msgs geometry_msgs)
+foreach(name IN ITEMS diagnostic_msgs geometry_msgs moveit_core)
   file(WRITE ${packages}/Find${name}.cmake "set(${name}_FOUND TRUE)")
 endforeach()
 file(WRITE ${packages}/Findgenerate_parameter_library.cmake "

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from typing import Any
 
 import numpy as np
 import pytest
@@ -62,6 +63,15 @@ def test_postures_near_a_start() -> None:
     assert postures(call("panda", *arguments))[0] == pytest.approx(start, abs=1e-3)
 
 
+@pytest.mark.parametrize("rank", ["distance", "manipulability", "ranges"])
+def test_rank(rank: Any) -> None:
+    result = call("panda", "--position", "0.5,0,0.4", "--rotation", "1,0,0,0", "--count", "3", "--rank", rank)
+    expected = PANDA.inverse_all(DOWN, count=3, rank=rank)
+    assert postures(result) == pytest.approx(np.array([each.q for each in expected]), abs=1e-4)
+    values = [float(line.split()[-2]) for line in result.output.splitlines()[2:]]
+    assert values == pytest.approx([each.rank_value for each in expected], abs=1e-3)
+
+
 @pytest.mark.parametrize(
     ("arguments", "message", "status"),
     [
@@ -71,6 +81,7 @@ def test_postures_near_a_start() -> None:
         (["panda", "--position", "0,0,1", "--rotation", "1,2"], "--rotation = '1,2': must be 3 or 4 or 9 numbers", 1),
         (["panda", "--position", "0,0,1", "--rotation", "0,0,0,0"], "--rotation is zero", 1),
         (["panda", "--position", "0,0,1", "--rotation", "2,0,0,0,2,0,0,0,2"], "must be a rotation matrix", 1),
+        (["panda", "--position", "0,0,1", "--rank", "best"], "'best' is not one of 'distance'", 2),
         (["panda", "--tip", "tool", "--position", "0,0,1"], "panda is a preset", 2),
         (["arm.urdf", "--position", "0,0,1"], "a URDF file needs --tip LINK", 2),
         (["arm.urdf", "--tip", "tool", "--position", "0,0,1"], "cannot read arm.urdf", 1),

@@ -119,6 +119,89 @@ def test_all_postures_are_distinct_and_sorted_by_distance() -> None:
     assert fp.InverseKinematics(arm).solve_all([[1, 0, 0, 9], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) == []
 
 
+def volume(J: Array) -> float:
+    """Manipulability by the singular values."""
+    return float(np.prod(np.linalg.svd(J, compute_uv=False)))
+
+
+def gap(limits: fp.JointLimits, q: Array) -> float:
+    lower, upper = np.asarray(limits.lower), np.asarray(limits.upper)
+    with np.errstate(invalid="ignore"):
+        gaps = np.minimum(q - lower, upper - q) / (upper - lower)
+    return float(np.min(gaps[np.isfinite(gaps)], initial=np.inf))
+
+
+@pytest.mark.parametrize("name", ["panda", "gen3", "ur5e"])
+@pytest.mark.parametrize("bounded", [False, True])
+def test_postures_are_sorted_by_rank(name: str, bounded: bool) -> None:
+    arm = fp.SerialArm.preset(name)
+    clearance = fp.Clearance.preset(name, obstacles=[fp.HalfSpace([0, 0, 1], -0.2, name="floor")])
+    (q,) = random_postures(arm, 1, 3) / 2
+    values: dict[Any, Any] = {
+        "distance": lambda each: np.linalg.norm(each - q),
+        "manipulability": lambda each: -volume(arm.jacobian(each, task="pose")),
+        "ranges": lambda each: -gap(arm.limits, each),
+    }
+    if bounded:
+        values["clearance"] = lambda each: -clearance.nearest(arm, each).distance  # type: ignore[union-attr]
+    inverse = fp.InverseKinematics(arm, bounds=[clearance] if bounded else [], starts=64)
+    sets = []
+    for rank, value in values.items():
+        found = inverse.solve_all(arm.forward(q), q, 1000, rank=rank)
+        expected = [value(each.q) for each in found]
+        assert len(found) >= 2
+        assert [abs(each.rank_value or 0) for each in found] == pytest.approx(np.abs(expected), rel=1e-9, abs=1e-12)
+        assert expected == pytest.approx(sorted(expected), rel=1e-9, abs=1e-12)
+        assert [tuple(each.q) for each in inverse.solve_all(arm.forward(q), q, 2, rank=rank)] == [
+            tuple(each.q) for each in found[:2]
+        ]
+        sets.append({tuple(each.q) for each in found})
+    assert all(each == sets[0] for each in sets)
+    assert inverse.solve(arm.forward(q), q).rank_value is None
+
+
+def test_manipulability_of_the_first_level() -> None:
+    robot = fp.Robot.preset("two_pandas")
+    tip = fp.PoseTask("right_tip", name="right")
+    (q,) = random_postures(robot, 1, 5) / 2
+    first = fp.PositionTask("left_tip", rows=("x", "z"), name="left")
+    found = robot.inverse_all(
+        {"left": robot.forward(q, "left_tip")[:3, 3]}, q, stack=fp.Stack([tip, first]), rank="manipulability", starts=32
+    )
+    rows = [0, 2]
+    expected = [
+        volume(np.vstack([robot.jacobian(each.q, "right_tip"), robot.jacobian(each.q, "left_tip")[rows]]))
+        for each in found
+    ]
+    assert len(found) > 1
+    assert [each.rank_value for each in found] == pytest.approx(expected)
+    assert expected == sorted(expected, reverse=True)
+
+
+def test_equal_ranks_are_sorted_by_distance() -> None:
+    """Joints without two ends do not count: all postures have the same distance from the ends."""
+    limits = fp.JointLimits(lower=[-3, -np.inf, -np.inf])
+    inverse = fp.InverseKinematics(fp.PlanarArm([1, 0.8, 0.6]), task="position", limits=limits)
+    found = inverse.solve_all([0.9, 0.7], [0.1, 0.2, 0.3], rank="ranges")
+    assert len(found) > 2
+    lengths = [np.linalg.norm(each.q - [0.1, 0.2, 0.3]) for each in found]
+    assert {each.rank_value for each in found} == {np.inf}
+    assert lengths == sorted(lengths)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"rank": "best"}, r"rank = 'best': must be 'distance', 'manipulability', 'ranges' or 'clearance'"),
+        ({"rank": "clearance"}, r"rank = 'clearance': needs a Clearance.*give bounds=\[fp.Clearance"),
+        ({"rank": "clearance", "bounds": [fp.TaskBounds(fp.PositionTask(), upper=9.0)]}, "needs a Clearance"),
+    ],
+)
+def test_wrong_ranks(arguments: dict[str, Any], message: str) -> None:
+    with pytest.raises(fp.ParameterError, match=message):
+        PANDA.inverse_all(np.eye(4), **arguments)
+
+
 def test_a_planar_arm() -> None:
     arm = fp.PlanarArm([1, 0.8, 0.6, 0.4])
     q, start = np.random.default_rng(3).uniform(-2, 2, (2, 4))

@@ -15,6 +15,7 @@ from ..schemes import FPBM
 from .plain import PLACE, Plain, file_errors, import_viser
 
 ROTATIONS = {3: "roll, pitch, yaw about fixed axes [rad]", 4: "quaternion x, y, z, w", 9: "matrix, row by row"}
+RANKS = {"distance": "distance from the start", "manipulability": "manipulability", "ranges": "distance from the ends"}
 NUMBERS = ("--position", "--rotation", "--start")
 
 
@@ -85,6 +86,7 @@ Examples:
 )
 @click.option("--start", metavar="NUMBERS", help="Start posture [rad or m]; default: the middle of the ranges.")
 @click.option("--count", type=click.IntRange(1, 1000), default=8, help="Largest number of postures.")
+@click.option("--rank", type=click.Choice(list(RANKS)), default="distance", help="Order of the postures.")
 @click.option("--starts", type=click.IntRange(1), default=256, help="Largest number of start postures.")
 @click.option("--tolerance", type=float, default=1e-6, help="Largest distance [m] and angle [rad] from the pose.")
 @click.option("--view", is_flag=True, help="Open the first posture in the browser, where the tip can be dragged.")
@@ -96,6 +98,7 @@ def inverse(
     rotation: str | None,
     start: str | None,
     count: int,
+    rank: str,
     starts: int,
     tolerance: float,
     view: bool,
@@ -104,7 +107,9 @@ def inverse(
 
     ARM is a preset, such as panda or ur5e, or a URDF file with --tip. Prints a row for each posture: the joint
     positions, the distance from the start, and the distance from the pose. If no posture is found, prints the nearest
-    posture, and the exit status is 1.
+    posture, and the exit status is 1. With --rank manipulability, the posture with the largest manipulability is first;
+    with --rank ranges, the posture that is farthest from the ends of the ranges, as a fraction of the range. This value
+    replaces the distance from the start.
     """
     try:
         chain = _arm(arm, tip, base)
@@ -115,17 +120,22 @@ def inverse(
         begin = _middle(chain) if start is None else _numbers("--start", start, [chain.dof])
         task = "position" if rotation is None else "pose"
         options: dict[str, Any] = {"task": task, "starts": starts, "tolerance": tolerance}
-        found = chain.inverse_all(target, begin, count, **options)
+        found = chain.inverse_all(target, begin, count, rank=rank, **options)
         shown: list[Any] = found or [chain.inverse(target, begin, **options)]
     except ValueError as error:
         raise click.ClickException(str(error)) from None
     rows = [
-        [str(i), *(f"{x:.4f}" for x in each.q), f"{np.linalg.norm(each.q - begin):.3f}", f"{each.error:.0e}"]
+        [
+            str(i),
+            *(f"{x:.4f}" for x in each.q),
+            "-" if each.rank_value is None else f"{each.rank_value:.3f}",
+            f"{each.error:.0e}",
+        ]
         for i, each in enumerate(shown, 1)
     ]
     slides = any(joint.type == "prismatic" for joint in chain.joints)
-    click.echo(f"Joint positions [{'rad or m' if slides else 'rad'}], distance from the start, error [m or rad]")
-    click.echo(columns(["", *chain.joint_names, "from start", "error"], *rows))
+    click.echo(f"Joint positions [{'rad or m' if slides else 'rad'}], {RANKS[rank]}, error [m or rad]")
+    click.echo(columns(["", *chain.joint_names, "from start" if rank == "distance" else rank, "error"], *rows))
     if not found:
         raise click.ClickException(
             f"no posture found: the posture above is {shown[0].error:.3g} m or rad from the pose; "

@@ -204,6 +204,6 @@ class ControllerInterface {
 namespace stand_in {
 
 /// A controller of the class in PLUGINLIB_EXPORT_CLASS.
-std::unique_ptr<controller_interface::ControllerInterface> exported_controller();
+std::unique_ptr<controller_interface::ControllerInterface> exported_plugin();
 
 }  // namespace stand_in

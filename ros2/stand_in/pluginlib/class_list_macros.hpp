@@ -1,7 +1,7 @@
 #pragma once
 
 // Stands in for pluginlib's header of this name.
-#define PLUGINLIB_EXPORT_CLASS(Class, Base)               \
-  std::unique_ptr<Base> stand_in::exported_controller() { \
-    return std::make_unique<Class>();                     \
+#define PLUGINLIB_EXPORT_CLASS(Class, Base)           \
+  std::unique_ptr<Base> stand_in::exported_plugin() { \
+    return std::make_unique<Class>();                 \
   }

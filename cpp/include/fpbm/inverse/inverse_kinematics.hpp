@@ -17,6 +17,7 @@
 #include "fpbm/inverse/detail/stack_search.hpp"
 #include "fpbm/inverse/detail/start_search.hpp"
 #include "fpbm/inverse/detail/tip_search.hpp"
+#include "fpbm/model/manipulability.hpp"
 
 namespace fpbm {
 
@@ -97,6 +98,17 @@ class InverseKinematics {
 
   /// Points of the tasks in the posture q, in the base frame.
   [[nodiscard]] Point tip(const JointVector& q) const noexcept { return kinematics_at(q).tip; }
+  /// Manipulability of the tip, or of the first level of a stack, in the posture q.
+  [[nodiscard]] Scalar manipulability(const JointVector& q) const noexcept {
+    const auto kinematics = kinematics_at(q);
+    Scalar value = fpbm::manipulability(first_rows(kinematics));
+    if constexpr (kIsProduct<Space>) {  // Rows in metres: without the lengths, the value is that of the tip alone.
+      kinematics.each_task([&](auto level, const auto& task, int) noexcept {
+        for (Eigen::Index i = 0; level == 0 && i < task.S.rows(); ++i) value /= task.S.row(i).norm();
+      });
+    }
+    return value;
+  }
 
   /// Calls found(posture) for the solution of each attempt, until found() returns true or all starts are used. Returns
   /// the last solution, or if there is none, the nearest posture found.

@@ -22,11 +22,11 @@ template <int M, int N, typename Scalar>
   const Scalar tiny(std::numeric_limits<Number<Scalar>>::min());
   Matrix<M, N, Scalar> rows = J;
   Scalar volume(1);
-  for (Eigen::Index i = 0; i < M; ++i) {
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
     const Scalar square = rows.row(i).squaredNorm();
     volume *= sqrt(square);
     const Scalar reciprocal = Scalar(1) / max(square, tiny);  // A zero row does not change the other rows.
-    for (Eigen::Index j = i + 1; j < M; ++j) {
+    for (Eigen::Index j = i + 1; j < rows.rows(); ++j) {
       const Scalar along = rows.row(j).dot(rows.row(i)) * reciprocal;
       rows.row(j) -= along * rows.row(i);
     }
