@@ -20,11 +20,11 @@ namespace fpbm {
 /// or drift in the null space of the higher levels while limits slow the tasks, and the robot would not stop.
 ///
 /// A task makes progress in a window of stall_time if its largest error is below 15/16 of its largest errors in all
-/// earlier windows. A task of a lower level stops if it makes no progress, its error exceeds 0.0001, no target has moved
-/// by 0.002 (TaskDistance), and no task makes progress of more than 0.002. A stopped task brakes: its reference is its
-/// current point at zero velocity, until the task and the joints are at rest or the next window ends. Then the task
-/// holds this point. If the task leaves this point by more than 0.000025 while all other tasks are at their targets, all
-/// joints brake.
+/// earlier windows. A task of a lower level stops if it makes no progress, its error exceeds 0.0001, no target has
+/// moved by 0.002 (TaskDistance), and no task makes progress of more than 0.002. A stopped task brakes: its reference
+/// is its current point at zero velocity, until the task and the joints are at rest or the next window ends. Then the
+/// task holds this point. If the task leaves this point by more than 0.000025 while all other tasks are at their
+/// targets, all joints brake.
 ///
 /// All tasks follow their references again if a target of any level or a shape near the arm moves, and after a tick
 /// that does not follow the references.
@@ -57,9 +57,8 @@ class LowerLevels {
     return true;
   }
 
-  /// Whether all joints should brake: tasks have stopped, and no task has approached its target for kQuiet windows, or
-  /// a stopped task has left its point. Otherwise, null-space motion could continue for minutes, or a limit cycle of
-  /// the limits could move a stopped task.
+  /// Whether all joints should brake: a stopped task has left its point, or tasks have stopped and no task has
+  /// approached its target for kQuiet windows. Otherwise, null-space motion could continue for minutes.
   [[nodiscard]] bool rests() const noexcept { return quiet_ >= kQuiet || displaced_; }
 
   /// Sets the scale of each level with a stopped task to 0.
