@@ -81,8 +81,8 @@ struct VelocityEnvelope {
     return from.a <= -b ? value(from) : value(from.ahead(until + b / jerk, -jerk));
   }
 
-  /// Upper bound on what a stop adds to q − r in G [rad] or [m]: v (t + c/d + v/2d) for velocities up to v = fastest
-  /// [rad/s], if G is largest within the time t = longest [s].
+  /// Upper bound on the excess that a stop adds to q − r [rad] or [m]: v (t + c/d + v/2d) for velocities up to
+  /// v = fastest [rad/s], if G is largest within the time t = longest [s].
   [[nodiscard]] Scalar excess_bound(Scalar fastest, Scalar longest) const noexcept {
     return fastest * (longest + delay + fastest * softness / Scalar(2));
   }

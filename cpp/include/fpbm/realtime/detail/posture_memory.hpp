@@ -40,7 +40,7 @@ class PostureMemory {
   }
 
   struct Nearest {
-    Scalar distance;  ///< Of the remembered tip; infinite if no posture is remembered.
+    Scalar distance;  ///< Distance of the remembered tip; infinite if no posture is remembered.
     int index;
   };
   [[nodiscard]] Nearest nearest(const Point& target, Scalar length) const noexcept {
