@@ -1,5 +1,5 @@
-"""Writes fpbm.hpp, which includes every public header. --check: checks fpbm.hpp, the number of public headers, and the
-directions of includes between the rooms of the library (docs/architecture.md)."""
+"""Writes fpbm.hpp, which includes every public header. --check: checks fpbm.hpp, the number of public headers, the
+lengths of headers, and the directions of includes between the rooms of the library (docs/architecture.md)."""
 
 import re
 import sys
@@ -10,6 +10,7 @@ UMBRELLA = INCLUDE / "fpbm" / "fpbm.hpp"
 # lanes.hpp needs <experimental/simd>, which not every standard library has.
 LEFT_OUT = {"fpbm/fpbm.hpp", "fpbm/core/lanes.hpp"}
 MOST_PUBLIC = 70
+MOST_LINES = 200
 # A header includes headers of its own layer and of the layers before.
 LAYERS = [
     ("core", "geometry", "linalg"),
@@ -46,6 +47,9 @@ def complaints(public: set[str], fresh: str) -> list[str]:
     if len(public) > MOST_PUBLIC:
         found.append(f"{len(public)} headers are public: at most {MOST_PUBLIC} may be, move others to detail/")
     for header in sorted((INCLUDE / "fpbm").rglob("*.hpp")):
+        lines = header.read_text().count("\n")
+        if lines > MOST_LINES:
+            found.append(f"{header}: has {lines} lines, at most {MOST_LINES} are allowed: move one idea to detail/")
         found += [f"{header}: includes a header of {room}/, a later layer" for room in wrong_includes(header)]
     return found
 

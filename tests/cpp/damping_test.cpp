@@ -469,7 +469,7 @@ void add_errors(FreeErrors& errors, const Scheme& scheme, const Matrix<M, N, Sca
   const Matrix<M, N, Scalar> Jd = Matrix<M, N, Scalar>::Zero();
   const Status status = scheme.resolve_rows(TaskEquation<M, N, Scalar>{J, Jd, nothing, nothing}, at_rest, u);
   EXPECT_FALSE(failed(status)) << message(status);
-  const RealVector z = real(scheme.null_space.position_part(at_rest));
+  const RealVector z = real(scheme.null_space.template at<fpbm::Level::kVelocity>(at_rest));
   const auto radius = static_cast<double>(scheme.singular.radius());
   const auto size = static_cast<double>(z.norm());
   const RealVector away = real(u) - free_motion(real(J), W, radius, z);

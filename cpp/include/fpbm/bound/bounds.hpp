@@ -7,35 +7,12 @@
 #include <type_traits>
 #include <utility>
 
+#include "fpbm/bound/detail/bound_members.hpp"
 #include "fpbm/bound/detail/next_motion.hpp"
-#include "fpbm/core/detail/has_member.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/limits/detail/rows.hpp"
 
 namespace fpbm {
-namespace bound_member {
-
-template <typename Bound>
-using RowCount = decltype(int{Bound::kRows});
-template <typename Bound>
-using StatusOfRows = decltype(Status{Bound::kStatus});
-template <typename Bound>
-using Empty = decltype(bool{std::declval<const Bound&>().empty()});
-template <typename Bound, typename JointVector>
-using Require = decltype(std::declval<Bound&>().require(std::declval<const JointVector&>()));
-template <typename Bound, typename Next, typename Rows_>
-using WriteRows = decltype(std::declval<Bound&>().rows(std::declval<const Next&>(), std::declval<Rows_&>()));
-template <typename Bound, typename From, typename Stop_>
-using Accepts = decltype(bool{
-    std::declval<Bound&>().accepts(std::declval<const From&>(), std::declval<const Stop_&>())});
-template <typename Bound, typename JointVector, typename F>
-using Gaps = decltype(std::declval<Bound&>().gaps(std::declval<const JointVector&>(), typename JointVector::Scalar(),
-                                                  std::declval<const F&>()));
-/// Member of a bound that knows shapes, as a Clearance. The bound also has near_distance_sum() and away(q).
-template <typename Bound>
-using MovesAway = decltype(std::declval<const Bound&>().moves_away());
-
-}  // namespace bound_member
 
 /// Everything that restricts the next motion of a Tracker beyond the joint limits: Bounds(a, b, …) joins bounds, for
 /// example a Clearance, TaskBounds and SpeedBounds. Without arguments, nothing is restricted.

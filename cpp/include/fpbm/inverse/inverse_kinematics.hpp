@@ -1,11 +1,9 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <type_traits>
 #include <utility>
 
 #include "fpbm/core/detail/lane_access.hpp"
@@ -14,9 +12,7 @@
 #include "fpbm/core/status.hpp"
 #include "fpbm/inverse/detail/attempts.hpp"
 #include "fpbm/inverse/detail/joint_ranges.hpp"
-#include "fpbm/inverse/detail/stack_search.hpp"
 #include "fpbm/inverse/detail/start_search.hpp"
-#include "fpbm/inverse/detail/tip_search.hpp"
 #include "fpbm/model/manipulability.hpp"
 
 namespace fpbm {
@@ -40,20 +36,6 @@ struct Posture {
   [[nodiscard]] bool solved() const noexcept { return status == Status::kOk; }
 };
 
-/// The arm with another Scalar, or the arm itself for an equal Scalar.
-template <typename Other, typename Arm>
-[[nodiscard]] auto arm_in(const Arm& arm) {
-  if constexpr (std::is_same_v<Other, typename Arm::Scalar>) {
-    return arm;
-  } else {
-    return arm.template cast<Other>();
-  }
-}
-
-/// StackSearch for a stack of tasks, or TipSearch for the tip of an arm.
-template <typename Arm, typename Space, typename Bounds_>
-using SearchOf = std::conditional_t<kIsProduct<Space>, StackSearch<Arm, Bounds_>, TipSearch<Arm, Space>>;
-
 /// Postures for targets: inverse kinematics within the ranges of the joints (docs/inverse.md).
 ///
 /// From the given start, and then from start postures that fill the ranges evenly, a search makes steps of Levenberg
@@ -76,19 +58,19 @@ class InverseKinematics {
 
   /// The tip of an arm. Throws std::invalid_argument if an option is out of range, or a joint has no range.
   InverseKinematics(const Arm& arm, Space, const InverseOptions<Scalar>& options = {})
-      : InverseKinematics(Parts{arm, options, arm.limits(), {}}) {}
+      : InverseKinematics(arm, options, arm.limits(), {}) {}
   /// limits: only the ranges are used.
   InverseKinematics(const Arm& arm, Space, const InverseOptions<Scalar>& options, const Limits_& limits)
-      : InverseKinematics(Parts{arm, options, limits, {}}) {}
+      : InverseKinematics(arm, options, limits, {}) {}
 
   /// A stack of tasks of a robot, within bounds. Throws as above, and if a task does not suit the robot.
   template <typename Robot_, typename... Levels>
   InverseKinematics(const Robot_& robot, const Stack<Levels...>& stack, const InverseOptions<Scalar>& options = {})
-      : InverseKinematics(Parts{Arm(robot, stack), options, robot.limits(), {}}) {}
+      : InverseKinematics(Arm(robot, stack), options, robot.limits(), {}) {}
   template <typename Robot_, typename... Levels>
   InverseKinematics(const Robot_& robot, const Stack<Levels...>& stack, const InverseOptions<Scalar>& options,
                     const Limits_& limits, const Bounds_& bounds = {})
-      : InverseKinematics(Parts{Arm(robot, stack), options, limits, bounds}) {}
+      : InverseKinematics(Arm(robot, stack), options, limits, bounds) {}
 
   /// A posture for the target. start: the first posture from which the search starts, moved into the ranges. From a
   /// start near the target, the result is the nearest posture.
@@ -100,14 +82,7 @@ class InverseKinematics {
   [[nodiscard]] Point tip(const JointVector& q) const noexcept { return kinematics_at(q).tip; }
   /// Manipulability of the tip, or of the first level of a stack, in the posture q.
   [[nodiscard]] Scalar manipulability(const JointVector& q) const noexcept {
-    const auto kinematics = kinematics_at(q);
-    Scalar value = fpbm::manipulability(first_rows(kinematics));
-    if constexpr (kIsProduct<Space>) {  // Rows in metres: without the lengths, the value is that of the tip alone.
-      kinematics.each_task([&](auto level, const auto& task, int) noexcept {
-        for (Eigen::Index i = 0; level == 0 && i < task.S.rows(); ++i) value /= task.S.row(i).norm();
-      });
-    }
-    return value;
+    return fpbm::manipulability(kinematics_at(q));
   }
 
   /// Calls found(posture) for the solution of each attempt, until found() returns true or all starts are used. Returns
@@ -117,56 +92,41 @@ class InverseKinematics {
     const One one = make_search<One>(arm_, target);
     const JointVector inside = ranges_.clamp(start);
     Attempts first(one);
-    first.start(true, inside, Scalar(kPatience));
+    first.start_given(inside);
     if (!is_finite(start) || !std::isfinite(first.now().cost)) {
       return {start, Status::kNotFinite, std::numeric_limits<Scalar>::infinity(), 1};
     }
-    const Scalar near = Scalar(kNear) * length_;
-    if (first.now().cost <= near * near) first.start(true, inside, Scalar(kPatienceNear));
     while (!one.reached(first.now()) && !first.step()) {
     }
     Result result{start, Status::kNotFound, Scalar(0), 1};
     typename One::Trial best = first.now();
     if (one.reached(best)) {
       first.settle();
-      result = solution(first.now().q, target, start, 1);
+      result = posture(first.now().q, Status::kOk, target, start, 1);
       if (found(result)) return result;
     }
     const Many many = make_search<Many>(batch_, target);
     StartSearch<Many> starts(many, ranges_, inside, Scalar(options_.seed), 1, options_.starts);
     starts.run(
         [&](const JointVector& q) noexcept {
-          result = solution(q, target, start, starts.used());
+          result = posture(q, Status::kOk, target, start, starts.used());
           return found(result);
         },
-        [&](const typename Many::Trial& trial, std::size_t lane) noexcept { keep_better(one, trial, lane, best); });
+        [&](const typename Many::Trial& now, std::size_t lane) noexcept { keep_better<Many>(one, now, lane, best); });
     if (result.solved()) return result;
-    const JointVector q = ranges_.near(best.q, start);
-    return {q, Status::kNotFound, error_of(q, target), starts.used()};
+    return posture(best.q, Status::kNotFound, target, start, starts.used());
   }
 
  private:
-  struct Parts {
-    Arm arm;
-    InverseOptions<Scalar> options;
-    Limits_ limits;
-    Bounds_ bounds;
-  };
-  explicit InverseKinematics(const Parts& parts)
-      : arm_(parts.arm),
-        batch_(arm_in<Batch>(parts.arm)),
-        options_(parts.options),
-        bounds_(parts.bounds),
-        ranges_{parts.limits.lower, parts.limits.upper} {
+  using One = SearchOf<Arm, Space, Bounds_>;
+  using BatchArm = decltype(arm_in<Batch>(std::declval<const Arm&>()));
+  using Many = SearchOf<BatchArm, Space, Bounds_>;
+
+  InverseKinematics(const Arm& arm, const InverseOptions<Scalar>& options, const Limits_& limits, const Bounds_& bounds)
+      : arm_(arm), batch_(arm_in<Batch>(arm)), options_(options), bounds_(bounds), ranges_{limits.lower, limits.upper} {
     validation::require_positive("tolerance", options_.tolerance);
     if (options_.starts < 1) validation::fail("starts", options_.starts, "at least 1");
-    validation::require_size("limits", ranges_.lower.size(), arm_.dof());
-    for (Eigen::Index i = 0; i < ranges_.lower.size(); ++i) {
-      if (!(ranges_.lower(i) <= ranges_.upper(i))) {
-        validation::fail(validation::element("limits.lower", i), ranges_.lower(i),
-                         "at most upper = ", ranges_.upper(i));
-      }
-    }
+    ranges_.require_sound(arm_.dof());
     length_ = kinematics_at(filled<JointVector>(arm_.dof())).length;
     ranges_.examine([&](const JointVector& q, const JointVector& moved) noexcept {
       const auto change = Space::template difference<Scalar>(kinematics_at(moved).tip, kinematics_at(q).tip);
@@ -176,31 +136,18 @@ class InverseKinematics {
       // A turn of a leader by 2π may turn its followers, which move no task, by another angle toward a bound.
       if (arm_.robot().drives().follows()) ranges_.periodic = 0;
     }
-    turning_ = ranges_.turning();
+    searched_ = ranges_.of_search();
   }
-
-  using One = SearchOf<Arm, Space, Bounds_>;
-  using BatchArm = decltype(arm_in<Batch>(std::declval<const Arm&>()));
-  using Many = SearchOf<BatchArm, Space, Bounds_>;
-
-  /// The attempt from a given start that is nearer than kNear characteristic lengths to the target is patient, since
-  /// the posture on the branch of the start is expected, as for the next waypoint of a path. Ranges: 12 to 100, and
-  /// 0.03 to 0.3. Of 60,000 waypoints (`make inverse`), 3 more are not on the branch of their start with a patience of
-  /// 4, and 2 more with kNear = 0.01.
-  static constexpr int kPatienceNear = 32;
-  static constexpr double kNear = 0.05;
 
   template <typename Search, typename Arm_>
   [[nodiscard]] Search make_search(const Arm_& arm, const Point& target) noexcept {
     using In = typename Search::Scalar;
     using Joints = typename Search::JointVector;
-    const auto ends = [&](const JointVector& q, Scalar without) noexcept {
-      return Joints(entrywise_as<In>(
-          q, [&](Eigen::Index i) { return In((turning_ & joint_bit(i)) != 0 ? without : q.coeff(i)); }));
+    const auto ends = [](const JointVector& q) noexcept {
+      return Joints(entrywise_as<In>(q, [&](Eigen::Index i) { return In(q.coeff(i)); }));
     };
-    constexpr Scalar kNone = std::numeric_limits<Scalar>::infinity();
-    const Joints lower = ends(ranges_.lower, -kNone);
-    const Joints upper = ends(ranges_.upper, kNone);
+    const Joints lower = ends(searched_.lower);
+    const Joints upper = ends(searched_.upper);
     if constexpr (Search::kHasRest) {
       return Search(arm, length_, bounds_, lower, upper, target, options_.tolerance);
     } else {
@@ -214,29 +161,15 @@ class InverseKinematics {
     }
   }
 
-  static void keep_better(const One& one, const typename Many::Trial& now, std::size_t lane,
-                          typename One::Trial& best) noexcept {
-    if constexpr (kInLanes<Batch>) {
-      if (!(now.cost[lane] < best.cost)) return;
-      best.cost = now.cost[lane];
-      best.q = lane_of(now.q, lane);
-    } else {
-      one.take(one.better(now, best), now, best);
-    }
-  }
-
   [[nodiscard]] Kinematics<Space, N, Scalar> kinematics_at(const JointVector& q) const noexcept {
     Kinematics<Space, N, Scalar> kinematics;
     arm_.kinematics(q, kinematics);
     return kinematics;
   }
-  [[nodiscard]] Result solution(const JointVector& q, const Point& target, const JointVector& start,
-                                int starts) const noexcept {
+  [[nodiscard]] Result posture(const JointVector& q, Status status, const Point& target, const JointVector& start,
+                               int starts) const noexcept {
     const JointVector near = ranges_.near(q, start);
-    return {near, Status::kOk, error_of(near, target), starts};
-  }
-  [[nodiscard]] Scalar error_of(const JointVector& q, const Point& target) const noexcept {
-    return One::largest_error(kinematics_at(q), target);
+    return {near, status, One::largest_error(kinematics_at(near), target), starts};
   }
 
   Arm arm_;
@@ -244,18 +177,15 @@ class InverseKinematics {
   InverseOptions<Scalar> options_;
   Bounds_ bounds_;
   JointRanges<N, Scalar> ranges_;
-  JointBits turning_ = 0;  ///< JointRanges::turning().
-  Scalar length_{1};       ///< Characteristic length [m].
+  JointRanges<N, Scalar> searched_;  ///< JointRanges::of_search().
+  Scalar length_{1};                 ///< Characteristic length [m].
 };
 
 template <typename Arm, typename Space, typename... More>
 InverseKinematics(const Arm&, Space, const InverseOptions<typename Arm::Scalar>&, const More&...)
     -> InverseKinematics<Arm, Space>;
 template <typename Robot_, typename... Levels>
-InverseKinematics(const Robot_&, const Stack<Levels...>&)
-    -> InverseKinematics<RobotTasks<Robot_, Stack<Levels...>>, StackSpace<Levels...>>;
-template <typename Robot_, typename... Levels>
-InverseKinematics(const Robot_&, const Stack<Levels...>&, const InverseOptions<typename Robot_::Scalar>&)
+InverseKinematics(const Robot_&, const Stack<Levels...>&, const InverseOptions<typename Robot_::Scalar>& = {})
     -> InverseKinematics<RobotTasks<Robot_, Stack<Levels...>>, StackSpace<Levels...>>;
 template <typename Robot_, typename... Levels, typename Bounds_ = Bounds<>>
 InverseKinematics(const Robot_&, const Stack<Levels...>&, const InverseOptions<typename Robot_::Scalar>&,

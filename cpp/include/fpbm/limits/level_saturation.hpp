@@ -68,10 +68,8 @@ class LevelSaturation {
     lost_ = Scalar(0);
     if (!J.allFinite() || !b.allFinite()) return Scalar(0);
     if (space_.rank() == space_.size()) return Scalar(1);  // The higher levels determine the motion.
-    Matrix<M, N, Scalar> scaled = J;
-    for (Eigen::Index j = 0; j < J.cols(); ++j) scaled.col(j) *= unit_(j);
     const Vector<M, Scalar> residual = b - J.lazyProduct(u_);
-    const JointVector desired = u_ + unit_.cwiseProduct(solution(scaled, residual));
+    const JointVector desired = u_ + unit_.cwiseProduct(solution(in_units(J, unit_), residual));
     if (!desired.allFinite()) return Scalar(0);
     if (box_.contains(desired) && rows_.admit(desired)) {
       u_ = desired;

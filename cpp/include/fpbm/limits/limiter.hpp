@@ -1,15 +1,14 @@
 #pragma once
 
-#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <type_traits>
 #include <utility>
 
 #include "fpbm/limits/detail/box_in_time.hpp"
 #include "fpbm/limits/detail/braking.hpp"
-#include "fpbm/limits/detail/goals.hpp"
 #include "fpbm/limits/detail/inverse_task_metric.hpp"
-#include "fpbm/limits/detail/least_squares_blend.hpp"
-#include "fpbm/limits/detail/one_level.hpp"
+#include "fpbm/limits/detail/motion_in_box.hpp"
 #include "fpbm/limits/detail/reserved_limits.hpp"
 #include "fpbm/limits/detail/row_projection.hpp"
 #include "fpbm/limits/detail/toward_goal.hpp"
@@ -39,19 +38,16 @@ class Limiter {
   template <typename Tasks>
   using Result = decltype(with_scale(std::declval<const Tasks&>(), std::declval<const JointVector&>(), Scalar(1)));
 
-  /// reserve: fraction of each joint's bound on acceleration that the levels below the first level leave to the first
-  /// level. The lower levels leave reserve/2 of the bound on velocity. 0: the first level has no reserve, and all
-  /// levels share the limits. compensates: whether other joints compensate for a joint that returns from beyond its
-  /// range. Throws std::invalid_argument if reserve is not in [0, 1].
+  /// reserve: fraction of each bound on acceleration that the levels below the first level leave to the first level.
+  /// They leave reserve/2 of each bound on velocity. 0: all levels share the limits. compensates: whether other joints
+  /// compensate for a joint that returns from beyond its range. Throws std::invalid_argument unless 0 ≤ reserve ≤ 1.
   explicit Limiter(const Limits<kLevel, N, Scalar>& limits, Scalar reserve = Scalar(0), bool compensates = false)
       : limits_(limits),
         lower_limits_(reserved_limits(limits, reserve)),
         reserves_(reserve > Scalar(0)),
         compensates_(compensates),
         unit_(limits.bounds().acceleration) {
-    for (Eigen::Index i = 0; i < unit_.size(); ++i) {
-      if (!std::isfinite(unit_(i))) unit_(i) = Scalar(1);
-    }
+    for (Eigen::Index i = 0; i < unit_.size(); ++i) unit_(i) = std::isfinite(unit_(i)) ? unit_(i) : Scalar(1);
   }
 
   [[nodiscard]] const Limits<kLevel, N, Scalar>& limits() const noexcept { return limits_; }
@@ -83,14 +79,14 @@ class Limiter {
     return motion(tasks, state, desired, JointVector::Zero(state.q.size()));
   }
 
-  /// Motion that resolves the first level as `desired` does, and brakes the joints in the null space of the first
-  /// level.
+  /// Motion that resolves the first level as `desired` does, and brakes in the null space of the first level.
   template <typename Tasks, int P = 0>
   [[nodiscard]] Result<Tasks> stop_on_first_level(const Tasks& tasks, const JointState& state,
                                                   const JointVector& desired, const JointVector& last,
                                                   const Rows<N, P, Scalar>& rows = {}) const noexcept {
     const JointVector rest = brake_in_proportion(limits_, state, limits_.box(state, last));
-    return motion(only_first(tasks), state, braking_in_null_space(tasks, desired, rest), last, rows);
+    const JointVector goal = desired + null_space_motion(only_first(tasks), JointVector(rest - desired));
+    return motion(only_first(tasks), state, goal, last, rows);
   }
 
   /// Braking motion, or a motion near the braking motion that the rows admit. The task scale is 0.
@@ -128,20 +124,20 @@ class Limiter {
         return lost < task ? Scalar(1) - lost / task : Scalar(0);
       };
     };
+    const auto limited = [&](const Tasks& changed, const JointVector& all) noexcept {
+      Result<Tasks> found = bounded(changed, state, all, last, rows);
+      found.rows |= active;
+      multiply_scales(found, tasks, removed(own, first), removed(desired, all));
+      return found;
+    };
     if constexpr (kHasLower<Tasks>) {
       JointVector all = first;
       if (&own != &desired) all += null_space_motion(only_first(tasks), JointVector(admitted(desired) - first));
       Tasks changed = tasks;
       changed.set_first_motion(first);
-      Result<Tasks> found = bounded(changed, state, all, last, rows);
-      found.rows |= active;
-      multiply_scales(found, tasks, removed(own, first), removed(desired, all));
-      return found;
+      return limited(changed, all);
     } else {
-      Result<Tasks> found = bounded(tasks, state, first, last, rows);
-      found.rows |= active;
-      multiply_scales(found, tasks, removed(own, first), removed(own, first));
-      return found;
+      return limited(tasks, first);
     }
   }
 
@@ -156,33 +152,13 @@ class Limiter {
     if (box.contains(desired)) return with_scale(tasks, desired, Scalar(1));
     auto saturation = saturation_of(tasks, unit_, rows);
     JointVector first;
-    if (!limits_.bounds_jerk()) return within(saturation, tasks, state, box, rows, desired, first);
-    const Result<Tasks> found =
-        within(saturation, tasks, state, box_in_time(limits_, state, last, box), rows, desired, first);
-    return after_last<Tasks>(saturation, state, last, box, rows, first, found);
-  }
-
-  /// Second pass with bounds on jerk: moves toward `found`, and the first level toward its motion `first`.
-  template <typename Tasks, typename Saturation, int P>
-  [[nodiscard]] Result<Tasks> after_last(Saturation& saturation, const JointState& state, const JointVector& last,
-                                         const Box<N, Scalar>& box, const Rows<N, P, Scalar>& rows,
-                                         const JointVector& first, const Result<Tasks>& found) const noexcept {
-    const JointVector steady = box.nearest(motions(limits_, state.qd, last));
-    if constexpr (kHasLower<Tasks>) {
-      const auto goals = approach(limits_, state.qd, first, found.u);
-      return toward_goal(saturation, box, rows, steady, goals.first, goals.all, found);
-    } else {
-      const JointVector goal = approach(limits_, state.qd, found.u, found.u).first;
-      return toward_goal(saturation, box, rows, steady, goal, goal, found);
-    }
-  }
-
-  /// u + N₁(r − u): resolves the first level as u does, and equals the braking motion r in the null space of the first
-  /// level.
-  template <typename Tasks>
-  [[nodiscard]] static JointVector braking_in_null_space(const Tasks& tasks, const JointVector& u,
-                                                         const JointVector& r) noexcept {
-    return u + null_space_motion(only_first(tasks), JointVector(r - u));
+    const auto resolve = [&](const Box<N, Scalar>& within) noexcept {
+      const MotionInBox<kLevel, N, P, Scalar> in_box{limits_, state, within, rows, compensates_};
+      return in_box.resolve(saturation, tasks, desired, first);
+    };
+    if (!limits_.bounds_jerk()) return resolve(box);
+    const Result<Tasks> found = resolve(box_in_time(limits_, state, last, box));
+    return second_pass<Tasks>(limits_, saturation, state, last, box, rows, first, found);
   }
 
   /// bounded() with a reserve. If the own motion of the first level exceeds the limits minus the reserve, the first
@@ -200,63 +176,18 @@ class Limiter {
     const JointVector& own = first_motion(tasks, desired);
     Result<Tasks> found = with_scale(tasks, own, Scalar(1));
     if (!lower.contains(own)) {
-      const JointVector rest = rows.near(braking(state, whole), whole);
-      found = resolve_first(saturation, tasks, state, whole, rows, braking_in_null_space(tasks, own, rest));
+      const MotionInBox<kLevel, N, P, Scalar> in_whole{limits_, state, whole, rows, compensates_};
+      const JointVector braking = null_space_motion(only_first(tasks), JointVector(in_whole.rest() - own));
+      found = in_whole.resolve_first(saturation, tasks, own + braking);
     }
     const JointVector first = found.u;
     lower = {lower.lower.cwiseMin(first), lower.upper.cwiseMax(first)};
     resolve_lower(saturation, lower, desired, found);
-    return jerk ? after_last<Tasks>(saturation, state, last, box, rows, first, found) : found;
+    return jerk ? second_pass<Tasks>(limits_, saturation, state, last, box, rows, first, found) : found;
   }
 
-  /// Braking motion for saturation. With compensates_, in the box also for joints beyond their ranges, so that other
-  /// joints compensate for their return.
-  [[nodiscard]] JointVector braking(const JointState& state, const Box<N, Scalar>& box) const noexcept {
-    JointVector rest = brake_in_proportion(limits_, state, box);
-    const auto& bounds = limits_.bounds();
-    for (Eigen::Index i = 0; compensates_ && i < rest.size(); ++i) {
-      if (state.q.coeff(i) < bounds.lower.coeff(i) || state.q.coeff(i) > bounds.upper.coeff(i)) {
-        rest.coeffRef(i) = std::clamp(rest.coeff(i), box.lower.coeff(i), box.upper.coeff(i));
-      }
-    }
-    return rest;
-  }
-
-  /// Motion within the bounds that realises as much as possible of the desired motion, level by level. first: set to
-  /// the motion of the first level alone, if there are lower levels.
-  template <typename Saturation, typename Tasks, int P>
-  [[nodiscard]] Result<Tasks> within(Saturation& saturation, const Tasks& tasks, const JointState& state,
-                                     const Box<N, Scalar>& box, const Rows<N, P, Scalar>& rows,
-                                     const JointVector& desired, JointVector& first) const noexcept {
-    Result<Tasks> found = resolve_first(saturation, tasks, state, box, rows, first_motion(tasks, desired));
-    if constexpr (kHasLower<Tasks>) {
-      first = found.u;
-      resolve_lower(saturation, box, desired, found);
-    }
-    return found;
-  }
-
-  /// First level of within(). If the result of the saturation is not finite, the arm brakes.
-  template <typename Saturation, typename Tasks, int P>
-  [[nodiscard]] Result<Tasks> resolve_first(Saturation& saturation, const Tasks& tasks, const JointState& state,
-                                            const Box<N, Scalar>& box, const Rows<N, P, Scalar>& rows,
-                                            const JointVector& desired) const noexcept {
-    if (box.contains(desired)) return with_scale(tasks, desired, Scalar(1));
-    const JointVector rest = rows.near(braking(state, box), box);
-    Result<Tasks> found = saturation(box, rest, desired);
-    if (found.scale < Scalar(1)) {
-      blend_with_least_squares<kLevel>(first_level(tasks), state.qd, box, rows, desired, found);
-    }
-    if (!is_finite(found.u)) {
-      found.u = rest;
-      set_scale(found, Scalar(0));
-    }
-    return found;
-  }
-
-  /// Largest relative change c of a level in limit_with_rows() with which the task scale is not reduced. The value is a
-  /// definition. The cost μ of null-space motion (inverse_task_metric()) causes a small c, which is not reported as a
-  /// blocked task (LimiterRows.scale_the_task_by_its_relative_change).
+  /// The value is a definition. The cost μ of null-space motion (inverse_task_metric()) causes a small change c, which
+  /// is not reported as a blocked task (LimiterRows.scale_the_task_by_its_relative_change).
   static constexpr Scalar kNegligibleChange = Scalar(0.01);
 
   Limits<kLevel, N, Scalar> limits_;

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "fpbm/core/detail/validation.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/limits/detail/box.hpp"
 #include "fpbm/limits/detail/jerk_limited_joint.hpp"
+#include "fpbm/limits/detail/state_check.hpp"
 #include "fpbm/limits/detail/usable_bounds.hpp"
 #include "fpbm/limits/detail/velocity_envelope.hpp"
 #include "fpbm/model/joint.hpp"
@@ -71,42 +71,19 @@ class Limits {
   /// Whether the state is viable up to round-off.
   [[nodiscard, gnu::cold, gnu::noinline]] bool is_viable(const State<N, Scalar>& state,
                                                          const JointVector& last) const noexcept {
-    for (Eigen::Index i = 0; i < state.q.size(); ++i) {
-      if (violation(i, state, last) != Violation::kNone) return false;
-    }
-    return true;
+    return Check{*this, state, last}.is_viable();
   }
 
   /// Throws std::invalid_argument if an acceleration exceeds its bound.
   void require_accelerations(const State<N, Scalar>& state, const JointVector& last) const {
-    for (Eigen::Index i = 0; i < state.q.size(); ++i) {
-      if (!(std::abs(last(i)) <= bounds_.acceleration(i) + rounding(i, state, last) / tick_)) {
-        validation::fail(validation::element("qdd0", i), last(i), "within the joint's bound of ",
-                         bounds_.acceleration(i));
-      }
-    }
+    Check{*this, state, last}.require_accelerations();
   }
 
   /// Throws std::invalid_argument if the state is not viable up to round-off. A tracker's own state is always viable,
   /// except if the start of the tracker was not (TrackerOptions::recover_start).
   void require_viable(const State<N, Scalar>& state) const { require_viable(state, at_rest(state)); }
   void require_viable(const State<N, Scalar>& state, const JointVector& last) const {
-    require_accelerations(state, last);
-    for (Eigen::Index i = 0; i < state.q.size(); ++i) {
-      const Violation found = violation(i, state, last);
-      const Scalar lower = bounds_.lower(i);
-      const Scalar upper = bounds_.upper(i);
-      if (found == Violation::kPosition) {
-        validation::fail(validation::element("q0", i), state.q(i), "within the joint's range, from ", lower, " to ",
-                         upper,
-                         std::isfinite(bounds_.deceleration(i)) ? ", where the bound on velocity is positive" : "",
-                         degrees(state.q(i), lower, upper), kRecover);
-      }
-      if (found == Violation::kVelocity) {
-        validation::fail(validation::element("qd0", i), state.qd(i),
-                         "slow enough for the joint to stop within its bounds", kRecover);
-      }
-    }
+    Check{*this, state, last}.require_viable();
   }
 
   /// Whether the limits admit a tick from one state to another at constant acceleration.
@@ -123,12 +100,16 @@ class Limits {
         const auto [low, high] = joint.after(last(i));
         good = good && low <= u && u <= high && joint.viable({to.q(i), to.qd(i), u});
       } else {
-        good = good && -bounds_.acceleration(i) <= u && u <= bounds_.acceleration(i) && viable(i, to.q(i), to.qd(i));
+        good = good && -bounds_.acceleration(i) <= u && u <= bounds_.acceleration(i) && allows(i, to.q(i), to.qd(i));
       }
     }
     return good;
   }
 
+  /// Whether a state of joint i is viable if its jerk is unbounded.
+  [[nodiscard]] bool allows(Eigen::Index i, Scalar q, Scalar qd) const noexcept {
+    return std::abs(qd) <= bounds_.velocity(i) && upper_[i].allows(q, qd) && lower_[i].allows(-q, -qd);
+  }
   /// Whether the envelopes of joint i admit the whole stop from the velocity qd at a constant deceleration.
   [[nodiscard]] bool allows_stop(Eigen::Index i, Scalar q, Scalar qd, Scalar deceleration) const noexcept {
     return upper_[i].allows_stop(q, qd, deceleration) && lower_[i].allows_stop(-q, -qd, deceleration);
@@ -155,6 +136,7 @@ class Limits {
 
  private:
   using Envelopes = VelocityEnvelopes<kLevel, N, Scalar>;
+  using Check = StateCheck<Limits, N, Scalar>;
 
   template <typename Accelerations>
   [[nodiscard]] Box<N, Scalar> box_of(const State<N, Scalar>& state, Accelerations&& accelerations) const noexcept {
@@ -198,56 +180,6 @@ class Limits {
 
   [[nodiscard]] static JointVector at_rest(const State<N, Scalar>& state) noexcept {
     return filled<JointVector>(state.q.size());
-  }
-
-  [[nodiscard]] bool viable(Eigen::Index i, Scalar q, Scalar qd) const noexcept {
-    return std::abs(qd) <= bounds_.velocity(i) && upper_[i].allows(q, qd) && lower_[i].allows(-q, -qd);
-  }
-
-  enum class Violation { kNone, kPosition, kVelocity };
-
-  /// First condition of a viable state that joint i violates.
-  [[nodiscard]] Violation violation(Eigen::Index i, const State<N, Scalar>& state,
-                                    const JointVector& last) const noexcept {
-    const Scalar q = std::clamp(state.q(i), bounds_.lower(i), bounds_.upper(i));
-    const Scalar slack = round_off(i, q);
-    if (!(std::abs(state.q(i) - q) <= slack)) return Violation::kPosition;
-    const Scalar qd = state.qd(i);
-    const Scalar margin = rounding(i, state, last);
-    // `last` is a difference of velocities over a tick, with the error of a velocity divided by h.
-    const Scalar of_velocity = margin - slack / tick_;
-    const AxisState<Scalar> error{slack, of_velocity, of_velocity / tick_};
-    const bool good = bounds_jerk(i) ? jerk_limited(i).viable({q, qd, last(i)}, error)
-                                     : viable(i, q, qd - std::clamp(qd, -margin, margin));
-    return good ? Violation::kNone : Violation::kVelocity;
-  }
-
-  /// Round-off error of the velocity of joint i, which may be a difference of positions over a tick. A tick rounds
-  /// q̇ + h a with an error of at most ε (|q̇| + h |a|). The factor 4 also covers the difference of two velocities from
-  /// which `last` is computed.
-  [[nodiscard]] Scalar rounding(Eigen::Index i, const State<N, Scalar>& state, const JointVector& last) const noexcept {
-    const Scalar q = std::clamp(state.q(i), bounds_.lower(i), bounds_.upper(i));
-    return round_off(i, q) / tick_ +
-           Scalar(4) * std::numeric_limits<Scalar>::epsilon() * (std::abs(state.qd(i)) + tick_ * std::abs(last(i)));
-  }
-
-  /// Remark for a position outside its range that would be within the range if it were in degrees.
-  [[nodiscard]] static const char* degrees(Scalar q, Scalar lower, Scalar upper) noexcept {
-    const Scalar converted = q * Scalar(3.14159265358979323846 / 180.0);
-    const bool likely = std::abs(q) > Scalar(6.5) && lower <= converted && converted <= upper;
-    return likely ? ": positions are in radians, and the value looks like degrees; multiply it by pi/180" : "";
-  }
-  static constexpr const char* kRecover = ", or give recover_start = true, with which the joint returns";
-
-  /// Round-off error of the position of joint i and of its distances to the ends of its range [rad] or [m]. A distance
-  /// has an error of at most ε (|q| + |end|). The factor 16 also covers the updates of q and of the envelopes
-  /// (SlowJoints.let_a_tracker_start_from_the_state_of_another).
-  [[nodiscard]] Scalar round_off(Eigen::Index i, Scalar q) const noexcept {
-    Scalar size = std::abs(q);
-    for (const Scalar end : {bounds_.lower(i), bounds_.upper(i)}) {
-      if (std::isfinite(end)) size += std::abs(end);
-    }
-    return Scalar(16) * std::numeric_limits<Scalar>::epsilon() * size;
   }
 
   Scalar tick_;

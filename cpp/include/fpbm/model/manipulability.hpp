@@ -33,6 +33,10 @@ template <int M, int N, typename Scalar>
   }
   return volume;
 }
+template <typename Space, int N, typename Scalar>
+[[nodiscard]] Scalar manipulability(const Kinematics<Space, N, Scalar>& kinematics) noexcept {
+  return manipulability(kinematics.J);
+}
 
 /// Gradient of the manipulability of an arm in a task space: ∂w/∂q_k = w tr(J⁺ ∂J/∂q_k) (docs/equations.md, Secondary
 /// objectives). ∂J/∂q_k is dJ/dt for a unit velocity of joint k, so that n + 1 calls of the kinematics are needed. Zero

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 
 #include "fpbm/core/detail/validation.hpp"
@@ -30,7 +29,7 @@ class Robot {
 
   /// Throws std::invalid_argument under the conditions of require_joints() and Drives.
   template <int Length = Eigen::Dynamic>
-  explicit Robot(const Chain<Scalar, Length>& chain) : tree_(checked(chain)), drives_(chain) {
+  explicit Robot(const Chain<Scalar, Length>& chain) : tree_(chain, require_joints(chain)), drives_(chain) {
     tip_link_ = joints();
     tip_ = tree_.end(tip_link_) * chain.tip;
     set_length(chain_length<Scalar>(chain, tip_link_) + norm(chain.tip.p));
@@ -38,18 +37,13 @@ class Robot {
 
   /// Throws std::invalid_argument under the conditions of require_tree() and Drives.
   template <int Length, int Frames>
-  explicit Robot(const Tree<Scalar, Length, Frames>& tree) : tree_(checked(tree)), drives_(tree) {
+  explicit Robot(const Tree<Scalar, Length, Frames>& tree) : tree_(tree, require_tree(tree)), drives_(tree) {
     masses_[0] = tree.base;
-    Scalar longest(0);
     for (int link = 1; link <= joints(); ++link) {
       const auto& [mass, centre] = tree.joints[index(link - 1)].moved;
       masses_[index(link)] = {mass, times(tree_.end(link).R, centre)};
-      longest = std::max(longest, chain_length<Scalar>(tree, link));
     }
-    for (const auto& frame : tree.frames) {
-      if (frame.link > 0) longest = std::max(longest, chain_length<Scalar>(tree, frame.link) + norm(frame.offset.p));
-    }
-    set_length(longest);
+    set_length(longest_chain<Scalar>(tree));
   }
 
   [[nodiscard]] int dof() const noexcept { return static_cast<int>(drives_.count()); }
@@ -57,8 +51,8 @@ class Robot {
   [[nodiscard]] int joints() const noexcept { return tree_.joints(); }
   /// Bounds on the drives within which all joints keep their bounds.
   [[nodiscard]] const JointLimits<N, Scalar>& limits() const noexcept { return drives_.limits(); }
-  /// Characteristic length [m]. For a chain: SerialArm::length(). For a tree: the length of the longest chain to a
-  /// frame or a joint.
+  /// Characteristic length [m]: SerialArm::length(), or the length of the longest chain to a frame or a joint of a
+  /// tree.
   [[nodiscard]] Scalar length() const noexcept { return length_; }
   [[nodiscard]] const Drives<N, Joints, Scalar>& drives() const noexcept { return drives_; }
   /// Whether joint i, counted from 0, is revolute, and not prismatic.
@@ -102,8 +96,7 @@ class Robot {
   }
 
   /// Frame fixed to a link, relative to the placement of the joint of the link. offset: the frame relative to the frame
-  /// of the link. The result is constant: an object that calls frame() at every tick computes the result once, in its
-  /// constructor.
+  /// of the link. The result is constant: compute it once, and not in every tick.
   [[nodiscard]] Transform<Scalar> in_joint(int link, const Transform<Scalar>& offset) const noexcept {
     return (link == kTip ? tip_ : tree_.end(link)) * offset;
   }
@@ -111,7 +104,6 @@ class Robot {
   [[nodiscard]] Transform<Scalar> frame(const State& state, int link, const Transform<Scalar>& seen) const noexcept {
     return state.placement(index(number_of(link))) * seen;
   }
-
   /// Axes of a frame of a link in the base frame, as columns. seen: R of in_joint().
   [[nodiscard]] Matrix<3, 3, Scalar> axes(const State& state, int link,
                                           const Matrix<3, 3, Scalar>& seen) const noexcept {
@@ -129,12 +121,9 @@ class Robot {
   }
 
   /// Calls f(i, columns, rates) with columns i and i + 1 of J and of J̇ of a point p of a link, along the axes of the
-  /// base frame: linear rows [m] above angular rows [rad]. Returns the velocity of the point [m/s].
-  ///
-  /// Column i of J is [l; a] = [z × (p − pᵢ); z] for a revolute joint, and [z; 0] for a prismatic joint. Column i of J̇
-  /// is [wᵢ × l + a × uᵢ; wᵢ × a], where wᵢ is the angular velocity of link i + 1, and uᵢ = Σ_{j>i} q̇ⱼ lⱼ
-  /// (docs/kinematics.md, Time derivative of J). The columns of joints that do not move the link are 0. J̇ is 0 if the
-  /// state has no velocities.
+  /// base frame: linear rows [m] above angular rows [rad]. Returns the velocity of the point [m/s]. The columns of
+  /// joints that do not move the link are 0. J̇ is 0 if the state has no velocities (docs/kinematics.md, Time derivative
+  /// of J).
   template <typename F>
   [[gnu::always_inline]] Vector3 columns(const State& state, int link, const Vector3& p, const F& f) const noexcept {
     if constexpr (Drives_::kMayFollow) {
@@ -150,10 +139,8 @@ class Robot {
   [[gnu::always_inline]] void angular_columns(const State& state, int link, const F& f) const noexcept {
     if constexpr (Drives_::kMayFollow) {
       if (drives_.follows()) {
-        (void)columns_of_drives(
-            state, link, filled<Vector3>(3),
-            [&](Eigen::Index i, const auto& columns, const auto& rates) { f(i, columns.angular, rates.angular); });
-        return;
+        const auto angular = [&](Eigen::Index i, const auto& J, const auto& Jd) { f(i, J.angular, Jd.angular); };
+        return (void)columns_of_drives(state, link, filled<Vector3>(3), angular);
       }
     }
     tree_.each_angular_column(state, number_of(link), f);
@@ -181,49 +168,22 @@ class Robot {
       return state.joint_qd;
     }
   }
-  /// Sets columns of the drives from columns of all joints.
-  template <int M>
-  void set_by_drive(const Matrix<M, Joints, Scalar>& columns, Matrix<M, N, Scalar>& to) const noexcept {
-    if constexpr (Drives_::kMayFollow) {
-      to = drives_.by_drive(columns);
-    } else {
-      to = columns;
-    }
-  }
 
  private:
   using Axes = typename LinkTree<Joints, Scalar>::Axes;
   using Drives_ = Drives<N, Joints, Scalar>;
 
-  template <int Length>
-  [[nodiscard]] static const auto& checked(const Chain<Scalar, Length>& chain) {
-    (void)require_joints(chain);
-    return chain;
-  }
-  template <int Length, int Frames>
-  [[nodiscard]] static const auto& checked(const Tree<Scalar, Length, Frames>& tree) {
-    (void)require_tree(tree);
-    return tree;
-  }
   [[nodiscard]] static std::size_t index(Eigen::Index i) noexcept { return static_cast<std::size_t>(i); }
   [[nodiscard]] int number_of(int link) const noexcept { return link == kTip ? tip_link_ : link; }
 
-  /// columns() for a robot with joints that follow others: the column of a drive is a sum over joints.
+  /// columns() for a robot with joints that follow others.
   template <typename F>
   Vector3 columns_of_drives(const State& state, int link, const Vector3& p, const F& f) const noexcept {
-    Matrix<6, Joints, Scalar> J;
-    Matrix<6, Joints, Scalar> Jd;
-    J.resize(6, joints());
-    Jd.resize(6, joints());
     typename Axes::Point point(SplitVector<Scalar>::load(p.data()));
-    tree_.each_column(state, number_of(link), point, joint_rates(state),
-                      [&](Eigen::Index i, const auto& columns, const auto& rates) noexcept {
-                        columns.store(J, i);
-                        rates.store(Jd, i);
-                      });
-    const Matrix<6, N, Scalar> of_drives = drives_.by_drive(J);
-    const Matrix<6, N, Scalar> rates_of_drives = drives_.by_drive(Jd);
-    for (Eigen::Index i = 0; i < dof(); i += 2) f(i, Columns::load(of_drives, i), Columns::load(rates_of_drives, i));
+    const auto of_joints = [&](const auto& set) noexcept {
+      tree_.each_column(state, number_of(link), point, joint_rates(state), set);
+    };
+    drives_.template each_column<Columns>(of_joints, f);
     return point.velocity();
   }
 

@@ -119,7 +119,7 @@ class NullSpace {
     return has_constant_ || (kLevel == Level::kAcceleration && has_damping_);
   }
 
-  /// z in a state.
+  /// z in a state. At velocity level, z is the part that depends on the posture: z without kₙ qd.
   template <Level kLevel>
   [[nodiscard]] Vector<N, Scalar> at(const State<N, Scalar>& state) const noexcept {
     Vector<N, Scalar> z = entrywise(state.q, [](Eigen::Index) { return Scalar(0); });
@@ -133,11 +133,6 @@ class NullSpace {
       z = entrywise(z, [&](Eigen::Index i) { return z.coeff(i) - damping_ * state.qd.coeff(i); });
     }
     return z;
-  }
-
-  /// Part of z that depends on the posture: z without kₙ qd.
-  [[nodiscard]] Vector<N, Scalar> position_part(const State<N, Scalar>& state) const noexcept {
-    return at<Level::kVelocity>(state);
   }
 
   /// Part of z that depends on the velocities, with additional damping: −(kₙ + brake) qd, or zero at velocity level.

@@ -89,9 +89,10 @@ struct TrackerOptions {
   bool recover_start = false;
 
   /// Damping for a scheme of an arm with dof joints, whose task has the given number of rows. Without a null space,
-  /// there is no null-space damping.
-  [[nodiscard]] DefaultDamping<Scalar> damping(Eigen::Index dof, Eigen::Index rows) const noexcept {
-    return {singular, dof > rows ? null_damping : Scalar(0)};
+  /// there is no null-space damping. continuous: bits of the continuous joints.
+  [[nodiscard]] DefaultDamping<Scalar> damping(Eigen::Index dof, Eigen::Index rows,
+                                               JointBits continuous = 0) const noexcept {
+    return {singular, dof > rows ? null_damping : Scalar(0), continuous};
   }
 };
 

@@ -1,27 +1,20 @@
 #pragma once
 
-#include <array>
+#include <type_traits>
 
+#include "fpbm/model/detail/continuous_joints.hpp"
 #include "fpbm/realtime/detail/account.hpp"
 #include "fpbm/realtime/detail/desire.hpp"
-#include "fpbm/realtime/detail/held_level.hpp"
-#include "fpbm/realtime/detail/joint_approach.hpp"
 #include "fpbm/realtime/detail/limit.hpp"
 #include "fpbm/realtime/detail/measured_limiter.hpp"
 #include "fpbm/realtime/detail/prove.hpp"
 #include "fpbm/realtime/detail/reference_sources.hpp"
 #include "fpbm/realtime/detail/require_stable.hpp"
 #include "fpbm/realtime/detail/tick_references.hpp"
-#include "fpbm/realtime/detail/turns.hpp"
 #include "fpbm/realtime/tick.hpp"
 #include "fpbm/scheme/detail/set_damping.hpp"
-#include "fpbm/simulate/detail/closed_loop.hpp"
 #include "fpbm/singular/detail/damped_gram.hpp"
 
-/// One tick of a control loop.
-///
-/// After construction, no function of a tracker allocates, throws, locks, does I/O or loops without a bound, for any
-/// input. The same inputs give the same bits. If no motion can be computed, the arm brakes.
 namespace fpbm {
 
 /// Moves an arm tick by tick with a scheme, within its joint limits and through singular postures, until the arm is at
@@ -32,9 +25,11 @@ namespace fpbm {
 /// measured state, for a torque controller. Never pass a measured state to tick(): the feedback would act twice, and
 /// noise would enter the command.
 ///
-/// A tick has one motion: the motion of the scheme in the middle of the tick, within the limits (Limiter).
+/// A tick has one motion: the motion of the scheme in the middle of the tick, within the limits (Limiter) and within
+/// further bounds: a Clearance, TaskBounds, SpeedBounds.
 ///
-/// Bounds restrict the motion further: a Clearance, TaskBounds, SpeedBounds.
+/// After construction, no function allocates, throws, locks, does I/O or loops without a bound, for any input. The same
+/// inputs give the same bits. If no motion can be computed, the arm brakes.
 template <typename Arm, typename Space, typename Scheme, typename Bounds_ = Bounds<>>
 class Tracker {
  public:
@@ -43,14 +38,12 @@ class Tracker {
   static_assert(require_members<Scheme, Space, N, Scalar>());
   static constexpr Level kLevel = Scheme::kLevel;
   static constexpr bool kBounded = !std::is_same_v<Bounds_, Bounds<>>;
-  static constexpr bool kHasLevels = kLevelsOf<Space> != 1;
   using Target = Reference<Space, Scalar>;
   using References = TickReferences<Space, Scalar>;
   using JointVector = Vector<N, Scalar>;
   using JointState = State<N, Scalar>;
   using Result = Tick<Space, N, Scalar>;
   using Options = TrackerOptions<Scalar>;
-  using JointLimiter = Limiter<kLevel, N, Scalar>;
 
   /// Starts from a state, or at rest, within the limits of the arm or given limits. Throws std::invalid_argument if an
   /// option is out of range, the scheme does not suit the arm, its gains are too high for the tick, a limit is missing
@@ -69,26 +62,11 @@ class Tracker {
         measured_(limits, options.measured_delay),
         last_command_(qdd0) {
     scheme.require_dof(arm.dof());
-    validation::require_size("limits", limits.bounds().lower.size(), arm.dof());
-    if (limits.tick() != options.dt) {
-      validation::fail("limits' tick", limits.tick(), "the tracker's dt = ", options.dt);
-    }
-    validation::require_joint_vector("q0", start.q, arm.dof());
-    validation::require_joint_vector("qd0", start.qd, arm.dof());
-    validation::require_joint_vector("qdd0", qdd0, arm.dof());
-    if (options.recover_start) {
-      limits.require_accelerations(start, qdd0);
-    } else {
-      limits.require_viable(start, qdd0);
-    }
-    validation::require_non_negative("null_damping", options.null_damping);
-    Kinematics<Space, N, Scalar> kinematics;
-    arm_.kinematics(start.q, kinematics);
-    DefaultDamping<Scalar> damping = options.damping(arm.dof(), first_rows(kinematics).rows());
-    damping.continuous = state_.continuous;
-    give_damping(scheme_, damping);
+    state_.require_start(options, arm.dof());
+    const auto kinematics = this->kinematics();
+    give_damping(scheme_, options.damping(arm.dof(), first_rows(kinematics).rows(), state_.continuous));
     require_stable(scheme_, TickOfGains<Scalar>{options.dt, options.integral_gain});
-    state_.require_bounds(start, qdd0);
+    state_.require_bounds();
     if (!state_.returning) state_.progress.begin_at(start.q, kinematics.tip, kinematics.length);
   }
 
@@ -121,9 +99,8 @@ class Tracker {
     return result;
   }
 
-  /// For a tick whose desired motion is computed elsewhere (TrackerBatch). begin(): error at the start of the tick.
-  /// Returns whether corrected() must replace the references before the motion is computed. finish(): `now` is the
-  /// reference at the start of the tick, not corrected. `references` are corrected. u: desired motion.
+  /// For a tick whose desired motion u is computed elsewhere (TrackerBatch). begin(): error at the start of the tick.
+  /// Returns whether corrected() must replace the references before the motion is computed. finish(): desire_given().
   bool begin(const Vector<Space::kRows, Scalar>& error, Scalar length) noexcept {
     begin_correction(arm_, state_, error, length);
     return state_.correction.active();
@@ -132,19 +109,8 @@ class Tracker {
   Status finish(const Target& now, const References& references, const JointVector& u) noexcept {
     Result result = state_.idle(state());
     result.error = state_.correction.error();
-    Desired<Loop, Space, N, Scalar> desired{
-        {arm_, scheme_, {}, state(), filled<JointVector>(state().q.size())}, now, u};
     auto rows = state_.rows(u);
-    const bool moves_away = state_.bounds.moves_away();
-    if (moves_away || state_.stopping || !state_.admits(rows, u)) {
-      points_of(arm_, state().q, desired.loop.kinematics, 0);
-      (void)state_.tick.update_middle(desired.loop, references, gains_of<Scalar>(scheme_));
-    }
-    if (moves_away) {
-      move_away(state_, desired);
-      rows = state_.rows(desired.u);
-    }
-    state_.tick.reference_change = references.change();
+    const auto desired = desire_given(arm_, scheme_, state_, now, references, u, rows);
     finish_tick(desired, rows, result);
     return result.status;
   }
@@ -189,9 +155,8 @@ class Tracker {
     return true;
   }
 
-  /// Reorders levels of the same type: level k becomes the former level order[k], with its references. The integrals
-  /// start at zero. The commands stay within all bounds. Returns false without an effect in the cases of
-  /// Stack::reorder().
+  /// Stack::reorder() of levels of the same type: level k becomes the former level order[k], with its references. The
+  /// integrals start at zero. The commands stay within all bounds.
   template <typename Order>
   bool reorder(const Order& order) noexcept {
     static_assert(kIsProduct<Space>, "only a stack has levels to reorder");
@@ -207,25 +172,19 @@ class Tracker {
   [[nodiscard]] const Bounds_& bounds() const noexcept { return state_.bounds; }
 
   /// Lower bound on σ_min(J) of the first level in the tracker's own state, tight within a factor √M.
-  [[nodiscard]] Scalar sigma() const noexcept {
-    Kinematics<Space, N, Scalar> kinematics;
-    arm_.kinematics(state().q, kinematics);
-    return least_singular_value_bound(first_rows(kinematics));
-  }
-
+  [[nodiscard]] Scalar sigma() const noexcept { return least_singular_value_bound(first_rows(kinematics())); }
   /// Tip f(q) of the tracker's own state, the usual start of a PathFollower.
-  [[nodiscard]] typename Space::template Point<Scalar> tip() const noexcept {
-    Kinematics<Space, N, Scalar> kinematics;
-    arm_.kinematics(state().q, kinematics);
-    return kinematics.tip;
-  }
+  [[nodiscard]] typename Space::template Point<Scalar> tip() const noexcept { return kinematics().tip; }
 
  private:
-  using Loop = ClosedLoop<Arm, Scheme, Space>;
-  using Measured = std::conditional_t<kLevel == Level::kAcceleration, MeasuredLimiter<N, Scalar>, NoMeasuredLimiter>;
+  [[nodiscard]] Kinematics<Space, N, Scalar> kinematics() const noexcept {
+    Kinematics<Space, N, Scalar> kinematics;
+    arm_.kinematics(state().q, kinematics);
+    return kinematics;
+  }
 
-  template <typename Rows_>
-  void finish_tick(const Desired<Loop, Space, N, Scalar>& desired, const Rows_& rows, Result& result) noexcept {
+  template <typename Desired_, typename Rows_>
+  void finish_tick(const Desired_& desired, const Rows_& rows, Result& result) noexcept {
     const bool damped = result.status == Status::kDamped;
     const JointVector u = limit(state_, desired, rows, result);
     account(state_, desired, prove(state_, u, result), damped, result);
@@ -234,7 +193,7 @@ class Tracker {
   Arm arm_;
   Scheme scheme_;
   TrackerState<kLevel, Space, N, Scalar, Bounds_> state_;
-  Measured measured_;
+  std::conditional_t<kLevel == Level::kAcceleration, MeasuredLimiter<N, Scalar>, NoMeasuredLimiter> measured_;
   JointVector last_command_;  ///< Last command for a measured state.
 };
 

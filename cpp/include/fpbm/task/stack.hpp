@@ -11,22 +11,6 @@
 
 namespace fpbm {
 
-/// Number of rows of a task, which may be known at run time (Task::kRows = Eigen::Dynamic).
-template <typename Task>
-[[nodiscard]] constexpr int rows_of([[maybe_unused]] const Task& task) noexcept {
-  if constexpr (Task::kRows == Eigen::Dynamic) {
-    return task.rows();
-  } else {
-    return Task::kRows;
-  }
-}
-
-/// Whether a task has positions of joints: whether it names the joint of each row.
-template <typename Task, typename = void>
-inline constexpr bool kIsPosture = false;
-template <typename Task>
-inline constexpr bool kIsPosture<Task, std::void_t<decltype(std::declval<const Task&>().joint(0))>> = true;
-
 /// Tasks on one level, with equal priority.
 template <typename... Tasks>
 struct TaskLevel {

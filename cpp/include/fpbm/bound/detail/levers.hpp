@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
+#include "fpbm/core/detail/validation.hpp"
 #include "fpbm/linalg/detail/three.hpp"
 #include "fpbm/model/tree.hpp"
 
@@ -59,5 +61,26 @@ class Levers {
 
   std::vector<Joint> joints_;
 };
+
+/// Throws the error of a capsule with an infinite lever: a prismatic joint without bounds is between a revolute joint
+/// and the capsule. A mobile base whose revolute joint is last has finite levers. source: the Tree or the Chain of the
+/// robot.
+template <typename Robot_, typename Source>
+[[noreturn]] void reject_unbounded(const Robot_& robot, const Source& source, const validation::Argument& argument,
+                                   int link) {
+  bool turns = false;
+  std::string rail;
+  each_joint(robot.moved_by(link), [&](Eigen::Index k) {
+    const auto& joint = joint_of(source, k);
+    turns = turns || robot.turns(k);
+    const bool bounded = std::isfinite(joint.bounds.lower) && std::isfinite(joint.bounds.upper);
+    if (turns && !robot.turns(k) && !bounded) rail = joint.name;
+  });
+  if (!rail.empty()) {
+    validation::reject(argument, ".link = ", link, ": moves with the prismatic joint '", rail,
+                       "', which has no bounds, after a revolute joint: give the joint lower and upper bounds");
+  }
+  validation::reject(argument, ": is too large: its lever about a joint must be finite");
+}
 
 }  // namespace fpbm

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -46,7 +46,7 @@ class Shapes {
       const validation::Argument argument = validation::element("capsules", static_cast<Eigen::Index>(i));
       capsules[i].require_sound(argument, robot_.joints());
       bodies_.emplace_back(levers_, link, robot_.in_joint(link, {}), capsule, name);
-      if (!bodies_.back().levers.allFinite()) reject_unbounded(source, argument, link);
+      if (!bodies_.back().levers.allFinite()) reject_unbounded(robot_, source, argument, link);
     }
     for (std::size_t i = 0; i < obstacles_.size(); ++i) {
       obstacles_[i].require_sound(validation::element("obstacles", static_cast<Eigen::Index>(i)));
@@ -56,13 +56,16 @@ class Shapes {
                          [&](const Names& names) { return names == Names(a, b) || names == Names(b, a); });
     };
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      const int link = bodies_[i].link;
+      const JointBits joints = robot_.moved_by(link);
       for (std::size_t j = 0; j < bodies_.size(); ++j) {
-        if (!may_collide(bodies_[i].link, bodies_[j].link) || is_allowed(bodies_[i].name, bodies_[j].name)) continue;
-        pairs_.push_back(pair_of_bodies(i, j));
+        const int earlier = bodies_[j].link;
+        if (link <= earlier || robot_.parent(link) == earlier || is_allowed(bodies_[i].name, bodies_[j].name)) continue;
+        const JointBits others = robot_.moved_by(earlier);
+        pairs_.push_back({i, j, false, joints & ~others, others & ~joints});
       }
       for (std::size_t j = 0; j < obstacles_.size(); ++j) {
-        if (bodies_[i].link == 0 || is_allowed(bodies_[i].name, obstacles_[j].name)) continue;
-        pairs_.push_back({i, j, true, robot_.moved_by(bodies_[i].link), 0});
+        if (link > 0 && !is_allowed(bodies_[i].name, obstacles_[j].name)) pairs_.push_back({i, j, true, joints, 0});
       }
     }
     exclude_overlaps();
@@ -151,33 +154,6 @@ class Shapes {
   }
 
  private:
-  /// Throws the error of a capsule with an infinite lever: a prismatic joint without bounds is between a revolute joint
-  /// and the capsule. A mobile base whose revolute joint is last has finite levers.
-  template <typename Source>
-  void reject_unbounded(const Source& source, const validation::Argument& argument, int link) const {
-    bool turns = false;
-    std::string rail;
-    each_joint(robot_.moved_by(link), [&](Eigen::Index k) {
-      const auto& joint = joint_of(source, k);
-      turns = turns || robot_.turns(k);
-      const bool bounded = std::isfinite(joint.bounds.lower) && std::isfinite(joint.bounds.upper);
-      if (turns && !robot_.turns(k) && !bounded) rail = joint.name;
-    });
-    if (!rail.empty()) {
-      validation::reject(argument, ".link = ", link, ": moves with the prismatic joint '", rail,
-                         "', which has no bounds, after a revolute joint: give the joint lower and upper bounds");
-    }
-    validation::reject(argument, ": is too large: its lever about a joint must be finite");
-  }
-  /// Whether a pair of links is checked: `first` is the later link, and `second` is not the parent of `first`.
-  [[nodiscard]] bool may_collide(int first, int second) const noexcept {
-    return first > second && robot_.parent(first) != second;
-  }
-  [[nodiscard]] ShapePair pair_of_bodies(std::size_t i, std::size_t j) const noexcept {
-    const JointBits first = robot_.moved_by(bodies_[i].link);
-    const JointBits second = robot_.moved_by(bodies_[j].link);
-    return {i, j, false, first & ~second, second & ~first};
-  }
   void exclude_overlaps() {
     if (pairs_.empty()) return;
     // A pair that is clear in 2 % of independent postures would be excluded with a probability of 0.98²⁵⁶ = 0.6 %.
@@ -187,9 +163,8 @@ class Shapes {
     for (int k = 0; k < kPostures; ++k) {
       place(spread_posture(robot_.limits(), k), placed);
       for (std::size_t p = 0; p < pairs_.size(); ++p) {
-        if (apart[p]) continue;
-        apart[p] =
-            distance_lower_bound(placed, pairs_[p]) >= margin_ || nearest_of(placed, pairs_[p]).distance >= margin_;
+        apart[p] = apart[p] || distance_lower_bound(placed, pairs_[p]) >= margin_ ||
+                   nearest_of(placed, pairs_[p]).distance >= margin_;
       }
     }
     std::vector<ShapePair> kept;

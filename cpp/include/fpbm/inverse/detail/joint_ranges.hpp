@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "fpbm/core/detail/mask.hpp"
+#include "fpbm/core/detail/validation.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/geometry/space.hpp"
 #include "fpbm/linalg/detail/entrywise.hpp"
@@ -26,17 +27,27 @@ struct JointRanges {
   template <typename Difference>
   void examine(const Difference& difference) noexcept;
 
-  /// Bits of the periodic joints with a range of at least one turn. For these joints, every position is equal to a
-  /// position in the range, so that the ends do not bound a search.
-  [[nodiscard]] JointBits turning() const noexcept {
-    constexpr Scalar kRoundOff = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
-    JointBits joints = 0;
-    each_joint(periodic, [&](Eigen::Index i) noexcept {
-      if (upper.coeff(i) - lower.coeff(i) >= static_cast<Scalar>(kTwoPi) * (Scalar(1) - kRoundOff)) {
-        joints |= joint_bit(i);
+  /// Throws std::invalid_argument if the ranges are not for dof joints, or a joint has no range.
+  void require_sound(Eigen::Index dof) const {
+    validation::require_size("limits", lower.size(), dof);
+    for (Eigen::Index i = 0; i < dof; ++i) {
+      if (!(lower(i) <= upper(i))) {
+        validation::fail(validation::element("limits.lower", i), lower(i), "at most upper = ", upper(i));
       }
+    }
+  }
+
+  /// The ranges that bound a search: a periodic joint with a range of at least one turn has no ends, since every
+  /// position is equal to a position in the range.
+  [[nodiscard]] JointRanges of_search() const noexcept {
+    constexpr Scalar kRoundOff = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
+    JointRanges ranges = *this;
+    each_joint(periodic, [&](Eigen::Index i) noexcept {
+      if (!(upper.coeff(i) - lower.coeff(i) >= static_cast<Scalar>(kTwoPi) * (Scalar(1) - kRoundOff))) return;
+      ranges.lower.coeffRef(i) = -std::numeric_limits<Scalar>::infinity();
+      ranges.upper.coeffRef(i) = std::numeric_limits<Scalar>::infinity();
     });
-    return joints;
+    return ranges;
   }
 
   [[nodiscard]] Vector<N, Scalar> clamp(const Vector<N, Scalar>& q) const noexcept {

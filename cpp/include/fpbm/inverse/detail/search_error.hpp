@@ -69,4 +69,15 @@ template <typename Space, typename Scalar>
   }
 }
 
+/// Distance [m] or angle [rad] of an error, whichever is larger.
+template <typename Space, typename Scalar>
+[[nodiscard]] Scalar larger_part(const Vector<Space::kRows, Scalar>& error) noexcept {
+  Scalar linear(0);
+  Scalar angular(0);
+  for (int i = 0; i < Space::kRows; ++i) {
+    (i < Space::kRows - Space::kTurns ? linear : angular) += error.coeff(i) * error.coeff(i);
+  }
+  return std::sqrt(std::max(linear, angular));
+}
+
 }  // namespace fpbm

@@ -2,15 +2,16 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <tuple>
 #include <type_traits>
 #include <utility>
 
+#include "fpbm/core/detail/unrolled.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/inverse/detail/level_step.hpp"
 #include "fpbm/inverse/detail/near_gaps.hpp"
+#include "fpbm/inverse/detail/search_error.hpp"
 #include "fpbm/linalg/detail/sums.hpp"
 #include "fpbm/task/detail/robot_tasks.hpp"
 
@@ -60,7 +61,38 @@ class StackSearch {
 
   void evaluate(Trial& trial) const noexcept {
     arm_.kinematics(trial.q, trial.kinematics);
-    set_errors(trial);
+    const Vector<Space::kRows, Scalar> error = task_error(trial.kinematics, target_);
+    trial.gaps.set(bounds_, trial.q, gap_weight_);
+    trial.costs.fill(Scalar(0));
+    trial.must.fill(false);
+    trial.costs[0] = trial.gaps.cost;
+    trial.rest = Scalar(0);
+    std::array<Eigen::Index, std::size_t{Stack_::kLevels}> rows{};
+    Space::each([&](auto space, auto i, int row) noexcept {
+      constexpr auto kTask = decltype(i)::value;
+      constexpr auto kLevel = static_cast<std::size_t>(Stack_::level(static_cast<int>(kTask)));
+      using Task = std::tuple_element_t<kTask, typename Stack_::Tasks>;
+      const auto& S = std::get<kTask>(trial.kinematics.tasks).S;
+      if (!trial.kinematics.enabled[kLevel] || S.rows() == 0) return;
+      const Vector<decltype(space)::kRows, Scalar> own = error.template segment<decltype(space)::kRows>(row);
+      auto& errors = std::get<kLevel>(trial.errors);
+      constexpr bool kMust = kLevel == 0 || !kIsPosture<Task>;
+      if (kMust) trial.must[kLevel] = true;
+      Scalar& cost = kMust ? trial.costs[kLevel] : trial.rest;
+      if (rows[kLevel] == 0) errors.resize(std::get<kLevel>(trial.kinematics.levels).rows());
+      for (Eigen::Index j = 0; j < S.rows(); ++j) {
+        Scalar e(0);
+        if constexpr (Task::kWhole) {
+          e = S.coeff(j, j) * own.coeff(j);
+        } else {
+          e = sum_over(own, [&](Eigen::Index c) { return S.coeff(j, c) * own.coeff(c); });
+        }
+        errors.coeffRef(rows[kLevel]++) = e;
+        cost += e * e;
+      }
+    });
+    trial.cost = Scalar(0);
+    for (const Scalar cost : trial.costs) trial.cost += cost;
   }
   [[nodiscard]] Scalar cost(const JointVector& q) const noexcept {
     Trial trial;
@@ -69,10 +101,7 @@ class StackSearch {
     return trial.cost;
   }
   [[nodiscard]] bool reached(const Trial& trial) const noexcept {
-    for (const Scalar cost : trial.costs) {
-      if (!(cost <= enough_)) return false;
-    }
-    return true;
+    return std::all_of(trial.costs.begin(), trial.costs.end(), [&](Scalar cost) { return cost <= enough_; });
   }
 
   /// Largest distance [m] or angle [rad] from a target that must be reached.
@@ -86,12 +115,7 @@ class StackSearch {
       constexpr auto kLevel = static_cast<std::size_t>(Stack_::level(static_cast<int>(kTask)));
       if (kLevel > 0 && kIsPosture<std::tuple_element_t<kTask, typename Stack_::Tasks>>) return;
       if (!kinematics.enabled[kLevel] || std::get<kTask>(kinematics.tasks).S.rows() == 0) return;
-      const Vector<Part::kRows, Scalar> own = error.template segment<Part::kRows>(row);
-      constexpr int kLinear = Part::kRows - Part::kTurns;
-      Scalar linear(0);
-      Scalar angular(0);
-      for (int j = 0; j < Part::kRows; ++j) (j < kLinear ? linear : angular) += own.coeff(j) * own.coeff(j);
-      largest = std::max(largest, std::sqrt(std::max(linear, angular)));
+      largest = std::max(largest, larger_part<Part, Scalar>(error.template segment<Part::kRows>(row)));
     });
     return largest;
   }
@@ -139,41 +163,6 @@ class StackSearch {
     });
   }
 
-  void set_errors(Trial& trial) const noexcept {
-    const Vector<Space::kRows, Scalar> error = task_error(trial.kinematics, target_);
-    trial.gaps.set(bounds_, trial.q, gap_weight_);
-    trial.costs.fill(Scalar(0));
-    trial.must.fill(false);
-    trial.costs[0] = trial.gaps.cost;
-    trial.rest = Scalar(0);
-    std::array<Eigen::Index, std::size_t{Stack_::kLevels}> rows{};
-    Space::each([&](auto space, auto i, int row) noexcept {
-      constexpr auto kTask = decltype(i)::value;
-      constexpr auto kLevel = static_cast<std::size_t>(Stack_::level(static_cast<int>(kTask)));
-      using Task = std::tuple_element_t<kTask, typename Stack_::Tasks>;
-      const auto& S = std::get<kTask>(trial.kinematics.tasks).S;
-      if (!trial.kinematics.enabled[kLevel] || S.rows() == 0) return;
-      const Vector<decltype(space)::kRows, Scalar> own = error.template segment<decltype(space)::kRows>(row);
-      auto& errors = std::get<kLevel>(trial.errors);
-      constexpr bool kMust = kLevel == 0 || !kIsPosture<Task>;
-      if (kMust) trial.must[kLevel] = true;
-      Scalar& cost = kMust ? trial.costs[kLevel] : trial.rest;
-      if (rows[kLevel] == 0) errors.resize(std::get<kLevel>(trial.kinematics.levels).rows());
-      for (Eigen::Index j = 0; j < S.rows(); ++j) {
-        Scalar e(0);
-        if constexpr (Task::kWhole) {
-          e = S.coeff(j, j) * own.coeff(j);
-        } else {
-          e = sum_over(own, [&](Eigen::Index c) { return S.coeff(j, c) * own.coeff(c); });
-        }
-        errors.coeffRef(rows[kLevel]++) = e;
-        cost += e * e;
-      }
-    });
-    trial.cost = Scalar(0);
-    for (const Scalar cost : trial.costs) trial.cost += cost;
-  }
-
   [[nodiscard]] JointBits outward_joints(const JointVector& q, const JointVector& step) const noexcept {
     JointBits joints = 0;
     for (Eigen::Index i = 0; i < q.size(); ++i) {
@@ -185,22 +174,16 @@ class StackSearch {
   }
 
   [[nodiscard]] JointVector resolve(const Trial& now, Scalar lambda, JointBits held, bool all) const noexcept {
-    return resolve(now, lambda, held, all, std::make_index_sequence<Stack_::kLevels>{});
-  }
-  template <std::size_t... k>
-  [[nodiscard]] JointVector resolve(const Trial& now, Scalar lambda, JointBits held, bool all,
-                                    std::index_sequence<k...>) const noexcept {
     LevelStep<N, Scalar> step(now.q.size(), held);
-    const auto add = [&](auto level) noexcept {
-      constexpr auto kLevel = decltype(level)::value;
+    each(Constant<0>{}, Constant<Stack_::kLevels>{}, [&](auto level) noexcept {
+      constexpr auto kLevel = static_cast<std::size_t>(decltype(level)::kIndex);
       const auto& rows = std::get<kLevel>(now.kinematics.levels);
       const auto& e = std::get<kLevel>(now.errors);
       if ((kLevel > 0 && !now.kinematics.enabled[kLevel]) || rows.rows() == 0 || !(all || now.must[kLevel])) return;
       const Scalar cost = squared_norm(e) + (kLevel == 0 ? now.gaps.cost : Scalar(0));
       const Scalar damping = lambda * cost + kRegular * length_ * length_;
       kLevel == 0 && now.gaps.count > 0 ? step.add(rows, e, now.gaps, damping) : step.add(rows, e, damping);
-    };
-    (add(std::integral_constant<std::size_t, k>{}), ...);
+    });
     return step.value();
   }
 

@@ -1,13 +1,44 @@
 #pragma once
 
 #include <cstddef>
+#include <type_traits>
 
 #include "fpbm/core/detail/lane_access.hpp"
 #include "fpbm/core/detail/mask.hpp"
+#include "fpbm/core/detail/parts.hpp"
 #include "fpbm/inverse/detail/attempts.hpp"
 #include "fpbm/inverse/detail/joint_ranges.hpp"
+#include "fpbm/inverse/detail/stack_search.hpp"
+#include "fpbm/inverse/detail/tip_search.hpp"
 
 namespace fpbm {
+
+/// The arm with another Scalar, or the arm itself for an equal Scalar.
+template <typename Other, typename Arm>
+[[nodiscard]] auto arm_in(const Arm& arm) {
+  if constexpr (std::is_same_v<Other, typename Arm::Scalar>) {
+    return arm;
+  } else {
+    return arm.template cast<Other>();
+  }
+}
+
+/// StackSearch for a stack of tasks, or TipSearch for the tip of an arm.
+template <typename Arm, typename Space, typename Bounds_>
+using SearchOf = std::conditional_t<kIsProduct<Space>, StackSearch<Arm, Bounds_>, TipSearch<Arm, Space>>;
+
+/// Sets `best` to an attempt of Many, in a lane, that gave up nearer to the target. one: search of single postures.
+template <typename Many, typename One>
+void keep_better(const One& one, const typename Many::Trial& now, [[maybe_unused]] std::size_t lane,
+                 typename One::Trial& best) noexcept {
+  if constexpr (kInLanes<typename Many::Scalar>) {
+    if (!(now.cost[lane] < best.cost)) return;
+    best.cost = now.cost[lane];
+    best.q = lane_of(now.q, lane);
+  } else {
+    one.take(one.better(now, best), now, best);
+  }
+}
 
 /// Attempts from start postures that fill the ranges, one for each lane of the Scalar. When an attempt ends, the next
 /// attempt starts in its lane. Search: TipSearch or StackSearch.

@@ -69,14 +69,7 @@ class TipSearch {
   /// Largest distance [m] or angle [rad] from the target.
   [[nodiscard]] static Scalar largest_error(const Kinematics<Space, N, Scalar>& kinematics,
                                             const Point& target) noexcept {
-    using std::max;
-    using std::sqrt;
-    const Vector<kRows, Scalar> e = Space::template difference<Scalar>(target, kinematics.tip);
-    Scalar linear(0);
-    Scalar angular(0);
-    each(kFirst, kLinear, [&](auto i) { linear += e.coeff(i) * e.coeff(i); });
-    each(kLinear, kLast, [&](auto i) { angular += e.coeff(i) * e.coeff(i); });
-    return sqrt(max(linear, angular));
+    return larger_part<Space, Scalar>(Space::template difference<Scalar>(target, kinematics.tip));
   }
 
   /// Where the trial is better than `now`.

@@ -7,6 +7,13 @@
 
 namespace fpbm {
 
+/// Interval of motions of a joint.
+template <typename Scalar>
+struct Interval {
+  Scalar low;
+  Scalar high;
+};
+
 /// Bounds on the motion of each joint in one tick: accelerations, or velocities at velocity level.
 template <int N, typename Scalar = double>
 struct Box {

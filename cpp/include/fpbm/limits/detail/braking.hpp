@@ -57,6 +57,41 @@ template <Level kLevel, int N, typename Scalar>
   return u;
 }
 
+/// Acceleration of the next tick in the shortest stop of joint i alone, after a tick with the accelerations `last`.
+template <Level kLevel, int N, typename Scalar>
+[[nodiscard]] Scalar brake_alone(const Limits<kLevel, N, Scalar>& limits, Eigen::Index i, const State<N, Scalar>& state,
+                                 const Vector<N, Scalar>& last) noexcept {
+  const Scalar most = limits.bounds().acceleration(i);
+  if (!limits.bounds_jerk(i)) return std::clamp(-state.qd(i) / limits.tick(), -most, most);
+  const auto joint = limits.jerk_limited(i);
+  const bool within = limits.bounds().lower(i) <= state.q(i) && state.q(i) <= limits.bounds().upper(i);
+  if (!within) return joint.brake(state.qd(i), last(i));  // A joint beyond its range stops there.
+  const auto [low, high] = joint.viable(joint.after(last(i)), state.q(i), state.qd(i));
+  return std::clamp(joint.brake(state.qd(i), last(i)), low, high);
+}
+
+/// Bounds on the displacement in the shortest stop of joint i alone [rad] or [m], from the velocity qd and the
+/// acceleration `last`. after_ramp: velocity after a ramp in which the acceleration decreases to zero.
+template <Level kLevel, int N, typename Scalar>
+[[nodiscard]] Interval<Scalar> displacement_alone(const Limits<kLevel, N, Scalar>& limits, Eigen::Index i, Scalar qd,
+                                                  Scalar last, Scalar after_ramp) noexcept {
+  const Scalar h = limits.tick();
+  const Scalar most = limits.bounds().acceleration(i);
+  if (!limits.bounds_jerk(i)) {
+    const Scalar distance = std::abs(qd) * (std::abs(qd) / most + h) / Scalar(2);
+    return qd > Scalar(0) ? Interval<Scalar>{Scalar(0), distance} : Interval<Scalar>{-distance, Scalar(0)};
+  }
+  // Upper bound: the velocity never exceeds `top`. The joint moves at `top` until the acceleration is zero, and then
+  // makes the shortest stop from `top`.
+  const Scalar jerk = limits.bounds().jerk(i);
+  const Scalar ramp = std::abs(last) / jerk;
+  const Scalar top = std::abs(qd) + std::abs(last) * ramp / Scalar(2);
+  const Scalar distance = top * (ramp + Scalar(2) * h) + QuickestStop<Scalar>{most, jerk}.stopping_distance(top);
+  const bool forth = qd > Scalar(0) && after_ramp >= Scalar(0);
+  const bool back = qd < Scalar(0) && after_ramp <= Scalar(0);
+  return {forth ? Scalar(0) : -distance, back ? Scalar(0) : distance};
+}
+
 /// Accelerations of a tick with unknown joint states: the acceleration `last`, reduced toward zero as fast as the
 /// bounds on jerk allow.
 template <Level kLevel, int N, typename Scalar>

@@ -6,16 +6,10 @@
 
 #include "fpbm/core/detail/quickest_stop.hpp"
 #include "fpbm/core/types.hpp"
+#include "fpbm/limits/detail/box.hpp"
 #include "fpbm/limits/detail/velocity_envelope.hpp"
 
 namespace fpbm {
-
-/// Interval of accelerations of a joint [rad/s²].
-template <typename Scalar>
-struct Interval {
-  Scalar low;
-  Scalar high;
-};
 
 /// A joint with a bound J on jerk, in a loop of ticks of length h (docs/tick.md, Bounds on jerk).
 ///
@@ -36,11 +30,13 @@ struct Interval {
 /// piecewise-constant acceleration compensates for the larger displacement.
 template <Level kLevel, typename Scalar>
 struct JerkLimitedJoint {
+  using Envelope = VelocityEnvelope<kLevel, Scalar>;
+
   QuickestStop<Scalar> stop;
-  Scalar velocity;                         ///< Bound on |q̇|.
-  VelocityEnvelope<kLevel, Scalar> upper;  ///< Bounds q, and q̇ near the upper end.
-  VelocityEnvelope<kLevel, Scalar> lower;  ///< For −q.
-  Scalar tick;                             ///< h [s]
+  Scalar velocity;  ///< Bound on |q̇|.
+  Envelope upper;   ///< Bounds q, and q̇ near the upper end.
+  Envelope lower;   ///< For −q.
+  Scalar tick;      ///< h [s]
 
   /// Whether some state that differs from `at` by at most `error` is viable. Velocities may be differences of positions
   /// over a tick.
@@ -69,11 +65,9 @@ struct JerkLimitedJoint {
   /// Largest acceleration b whose decrease to zero by steps of Jh changes the velocity by at most `amount`:
   /// h (b + (b − Jh) + (b − 2Jh) + …) ≤ amount.
   [[nodiscard]] Scalar change(Scalar amount) const noexcept {
-    using std::floor;
-    using std::sqrt;
     const Scalar step = stop.jerk * tick;
     const Scalar sum = amount / tick;
-    const Scalar steps = floor((sqrt(Scalar(1) + Scalar(8) * sum / step) - Scalar(1)) / Scalar(2));
+    const Scalar steps = std::floor((std::sqrt(Scalar(1) + Scalar(8) * sum / step) - Scalar(1)) / Scalar(2));
     return std::min(stop.acceleration, (sum + step * steps * (steps + Scalar(1)) / Scalar(2)) / (steps + Scalar(1)));
   }
 
@@ -99,23 +93,16 @@ struct JerkLimitedJoint {
     const Scalar size = std::abs(at.a);
     const Scalar fastest = std::abs(at.v) + size * size * inverse_jerk / Scalar(2);
     const Scalar longest = (stop.acceleration + size) * inverse_jerk;
-    const auto stops_before = [&](const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar q) noexcept {
-      return q - envelope.stop_position + excess_bound(envelope, fastest, longest) <= Scalar(0);
+    const auto stops_before = [&](const Envelope& envelope, Scalar q) noexcept {
+      return q - envelope.stop_position + envelope.excess_bound(fastest, longest) <= Scalar(0);
     };
     return fastest <= velocity && stops_before(upper, at.q) && stops_before(lower, -at.q);
-  }
-
-  /// Upper bound on the excess over an envelope that a stop adds [rad] or [m]: v (t + c/d + v/2d) for velocities up to
-  /// v = fastest [rad/s], if the excess has its maximum within the time t = longest [s].
-  [[nodiscard]] static Scalar excess_bound(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar fastest,
-                                           Scalar longest) noexcept {
-    return fastest * (longest + envelope.delay + fastest * envelope.softness / Scalar(2));
   }
 
   /// Whether a state satisfies the two conditions of docs/tick.md, Bounds on jerk, toward one end: w + a²/2J ≤ v for
   /// a > 0, up to `slack` [rad/s], and G ≤ 0 (VelocityEnvelope::excess()). w is the velocity of the state, a its
   /// acceleration, and v the bound on the velocity.
-  [[nodiscard]] bool is_viable_toward(const VelocityEnvelope<kLevel, Scalar>& envelope, const AxisState<Scalar>& at,
+  [[nodiscard]] bool is_viable_toward(const Envelope& envelope, const AxisState<Scalar>& at,
                                       Scalar slack) const noexcept {
     const Scalar rises = std::max(at.a, Scalar(0));
     return at.v + rises * rises / (Scalar(2) * stop.jerk) <= velocity + slack &&
@@ -128,14 +115,13 @@ struct JerkLimitedJoint {
   static constexpr int kRounds = 6;
   static constexpr int kExactRounds = 20;  ///< Twice the iterations after which the error is round-off.
 
-  /// Largest acceleration in the interval `some` after which the state is viable toward one end: the state satisfies
-  /// the bound on velocity and G ≤ 0 (docs/tick.md, Bounds on jerk). q and qd increase toward this end. rounds:
-  /// largest number of iterations of the search for G = 0.
+  /// Largest acceleration in the interval `some` after which the state is viable toward one end (is_viable_toward()). q
+  /// and qd increase toward this end. rounds: largest number of iterations of the search for G = 0.
   ///
   /// If no acceleration leads to a viable state, returns some.low. Exception: a joint that would exceed the envelope
   /// only by round-off stops within the tick, at the acceleration −q̇/h.
-  [[nodiscard]] Scalar largest_viable(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar q, Scalar qd,
-                                      Interval<Scalar> some, int rounds = kRounds) const noexcept {
+  [[nodiscard]] Scalar largest_viable(const Envelope& envelope, Scalar q, Scalar qd, Interval<Scalar> some,
+                                      int rounds = kRounds) const noexcept {
     const Scalar speed_slack = velocity - qd;
     const Scalar greatest = std::max(some.high, Scalar(0));
     const Scalar inverse_jerk = Scalar(1) / stop.jerk;
@@ -144,7 +130,7 @@ struct JerkLimitedJoint {
     // the excess has its maximum within the time `longest`.
     const Scalar top = std::max(qd + gain, Scalar(0));
     const Scalar longest = tick + (stop.acceleration + greatest) * inverse_jerk;
-    if (gain <= speed_slack && q - envelope.stop_position + excess_bound(envelope, top, longest) <= Scalar(0)) {
+    if (gain <= speed_slack && q - envelope.stop_position + envelope.excess_bound(top, longest) <= Scalar(0)) {
       return some.high;
     }
     const Scalar high = within_velocity(speed_slack, some);
@@ -160,17 +146,16 @@ struct JerkLimitedJoint {
     // No acceleration above some.low keeps the envelope. If the excess is only round-off error, the joint stops at its
     // end: with some.low, the joint would leave its end at full jerk.
     const Scalar halts = std::clamp(-qd / tick, some.low, high);
-    return excess(halts) <= round_off(envelope, q) ? halts : found;
+    return excess(halts) <= envelope.round_off(q) ? halts : found;
   }
 
   /// Largest acceleration u in the interval `some` with which q̇ increases by at most `speed_slack` [rad/s], in the
   /// tick and in the following reduction of u to zero at the jerk −J. u is the positive root of u h + u²/2J =
   /// speed_slack, or speed_slack/h if `speed_slack` is negative. If the velocity is unbounded, returns some.high.
   [[nodiscard]] Scalar within_velocity(Scalar speed_slack, Interval<Scalar> some) const noexcept {
-    using std::sqrt;
     const Scalar ratio = tick / speed_slack;
     const Scalar fastest = speed_slack > Scalar(0)
-                               ? Scalar(2) / (ratio + sqrt(ratio * ratio + Scalar(2) / (speed_slack * stop.jerk)))
+                               ? Scalar(2) / (ratio + std::sqrt(ratio * ratio + Scalar(2) / (speed_slack * stop.jerk)))
                                : speed_slack / tick;
     return std::clamp(fastest, some.low, some.high);
   }
@@ -178,8 +163,7 @@ struct JerkLimitedJoint {
   /// Largest excess over an envelope [rad] or [m] after a tick with the acceleration u. from: q − r at the start of
   /// the tick. If from > 0, the joint is beyond its end, and the result is the position at the end of the shortest
   /// stop, relative to the stop position.
-  [[nodiscard]] Scalar excess_after(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar from, Scalar qd,
-                                    Scalar u) const noexcept {
+  [[nodiscard]] Scalar excess_after(const Envelope& envelope, Scalar from, Scalar qd, Scalar u) const noexcept {
     const Scalar next = qd + tick * u;
     const Scalar displacement = tick * (kLevel == Level::kVelocity ? next : qd + tick * u / Scalar(2));
     if (from > Scalar(0)) return stop.end_position({from + displacement, next, u});
@@ -200,7 +184,7 @@ struct JerkLimitedJoint {
     const Scalar fastest = within_velocity(velocity - qd, some);
     const Scalar slowest = -within_velocity(velocity + qd, mirrored);
     if (!(slowest <= fastest)) return {(slowest + fastest) / Scalar(2), (slowest + fastest) / Scalar(2)};
-    const Scalar slack = std::max(round_off(upper, q), round_off(lower, -q));
+    const Scalar slack = std::max(upper.round_off(q), lower.round_off(-q));
     const auto conflict = [&](Scalar u) noexcept {
       const Scalar above = excess_after(upper, q - upper.stop_position, qd, u);
       const Scalar below = excess_after(lower, -q - lower.stop_position, -qd, -u);
@@ -209,14 +193,6 @@ struct JerkLimitedJoint {
     const Scalar u = largest_below_zero(conflict, std::clamp(high, slowest, fastest), std::clamp(low, slowest, fastest),
                                         kExactRounds);
     return {u, u};
-  }
-
-  /// Round-off error of an excess over the envelope of one end [rad] or [m]. The distance to the end has an error of at
-  /// most ε (|q| + |r|). The factor 8 also covers the other terms of the excess.
-  [[nodiscard]] static Scalar round_off(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar q) noexcept {
-    return std::isfinite(envelope.stop_position)
-               ? Scalar(8) * std::numeric_limits<Scalar>::epsilon() * (std::abs(q) + std::abs(envelope.stop_position))
-               : Scalar(0);
   }
 };
 

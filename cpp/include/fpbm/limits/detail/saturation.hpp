@@ -6,11 +6,10 @@
 
 #include "fpbm/limits/detail/box.hpp"
 #include "fpbm/limits/detail/held_joints.hpp"
+#include "fpbm/limits/detail/in_units.hpp"
 #include "fpbm/limits/detail/rows.hpp"
 #include "fpbm/limits/detail/saturated_motion.hpp"
 #include "fpbm/linalg/detail/level_space.hpp"
-#include "fpbm/linalg/detail/null_basis.hpp"
-#include "fpbm/linalg/detail/self_motion.hpp"
 #include "fpbm/linalg/detail/sums.hpp"
 
 namespace fpbm {
@@ -41,19 +40,7 @@ class NullSpaceSaturation {
     const Eigen::Index n = J.cols();
     Eigen::Index all = n;
     if constexpr (P > 0) all += rows.count;
-    if (!set_self_motion(J, all)) {
-      Matrix<M, N, Scalar> scaled = J;
-      for (Eigen::Index j = 0; j < n; ++j) {
-        for (Eigen::Index i = 0; i < J.rows(); ++i) scaled.coeffRef(i, j) *= unit.coeff(j);
-      }
-      const RowSpace<M, N, Scalar> space(scaled);
-      Z_.resize(all, n - space.rank());
-      JointVector column = unit;
-      for (Eigen::Index j = 0; j < Z_.cols(); ++j) {
-        space.column(space.rank() + j, column);
-        for (Eigen::Index i = 0; i < n; ++i) Z_.coeffRef(i, j) = column.coeff(i);
-      }
-    }
+    set_null_basis(J, unit, all, Z_);
     add_rows(n);
   }
 
@@ -151,9 +138,6 @@ class NullSpaceSaturation {
 
   // `fpbm_tests --gtest_filter='DegenerateSaturation*'` passes with the ranges below.
 
-  /// Smallest |v|² of a self-motion v in SelfMotion, as a fraction of the largest possible |v|². |v| is then at least
-  /// 1/100 of its largest possible length, and v has lost at most two digits. Range: 1e-8 to 1e-2.
-  static constexpr Scalar kRegular = Scalar(1e-4);
   /// Largest number of passes for each joint or row. With 2, the tests pass; with 1, 46 of the 16,500 problems are not
   /// solved. `fpbm_tests --gtest_filter='*Saturation*'` prints the largest number of passes.
   static constexpr int kPasses = 3;
@@ -166,25 +150,6 @@ class NullSpaceSaturation {
   /// A rate up to this fraction of the largest rate is round-off error: a joint with a smaller rate does not move.
   /// Range: ε to 1000 ε. With 16,000 ε, a motion leaves the line of the task.
   static constexpr Scalar kStill = Scalar(16) * std::numeric_limits<Scalar>::epsilon();
-
-  /// Sets Z for an arm with one self-motion v, away from singular postures: v in the units of the joints, with
-  /// length 1. For other arms and postures, returns false.
-  [[nodiscard]] bool set_self_motion([[maybe_unused]] const Matrix<M, N, Scalar>& J,
-                                     [[maybe_unused]] Eigen::Index rows) noexcept {
-    if constexpr (kHasSelfMotion<M, N>) {
-      SelfMotion<M, N, Scalar> motion;
-      for (int kind = 0; kind < motion.kKinds; ++kind) {
-        if (!motion.factor(J, kind, kRegular)) continue;
-        Z_.resize(rows, 1);
-        const JointVector v = motion.null();
-        const JointVector in_units = entrywise(v, [&](Eigen::Index i) { return v.coeff(i) / unit_.coeff(i); });
-        const Scalar length = norm(in_units);
-        for (Eigen::Index i = 0; i < N; ++i) Z_.coeffRef(i, 0) = in_units.coeff(i) / length;
-        return true;
-      }
-    }
-    return false;
-  }
 
   /// Appends the rows gᵀZ of the further bounds to the n rows of the joints. Scales each g to length 1 in the units of
   /// the joints.

@@ -101,18 +101,6 @@ class StackSaturation {
     }
   }
 
-  template <int M>
-  [[nodiscard]] static Matrix<M, N, Scalar> in_units(Matrix<M, N, Scalar> rows, const JointVector& unit) noexcept {
-    for (Eigen::Index j = 0; j < rows.cols(); ++j) {
-      for (Eigen::Index i = 0; i < rows.rows(); ++i) rows.coeffRef(i, j) *= unit.coeff(j);
-    }
-    return rows;
-  }
-  [[nodiscard]] static DiagonalLevel<N, Scalar> in_units(const DiagonalLevel<N, Scalar>& rows,
-                                                         const JointVector& unit) noexcept {
-    return {product(rows, unit)};
-  }
-
   /// (d − u)/unit for v = u* − u. Adds the level to the space.
   template <typename LevelRows>
   [[nodiscard]] JointVector correction(LevelSpace<N, Scalar>& space, const LevelRows& rows,

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 #include "fpbm/core/detail/quickest_stop.hpp"
+#include "fpbm/limits/detail/braking.hpp"
 #include "fpbm/limits/detail/stop_profile.hpp"
 #include "fpbm/limits/limits.hpp"
 
@@ -54,8 +54,7 @@ class StopPlan {
     const Scalar h = limits.tick();
     const auto& bounds = limits.bounds();
     for (Eigen::Index i = 0; i < last.size(); ++i) {
-      using std::abs;
-      if (limits.bounds_jerk(i)) ramp_ticks_ = std::max(ramp_ticks_, ticks_for(abs(last(i)), h * bounds.jerk(i)));
+      if (limits.bounds_jerk(i)) ramp_ticks_ = std::max(ramp_ticks_, ticks_for(std::abs(last(i)), h * bounds.jerk(i)));
     }
     velocity_ += h * ramp_velocity_change() * last;
     for (Eigen::Index i = 0; i < last.size(); ++i) {
@@ -72,7 +71,6 @@ class StopPlan {
   /// start of the plan.
   [[nodiscard]] StopDisplacement<N, Scalar> displacement(const MotionLimits& limits, const State<N, Scalar>& before,
                                                          const State<N, Scalar>& start) const noexcept {
-    using std::abs;
     const Eigen::Index n = last_.size();
     const Scalar h = limits.tick();
     StopDisplacement<N, Scalar> result = StopDisplacement<N, Scalar>::none(n);
@@ -87,11 +85,11 @@ class StopPlan {
         result.start_velocity(i) = kLevel == Level::kVelocity ? start.qd(i) : before.qd(i);
         continue;
       }
-      const auto [low, high] = single_stop_displacement(limits, i, start.qd(i));
+      const auto [low, high] = displacement_alone(limits, i, start.qd(i), last_(i), velocity_(i));
       const Scalar tick = start.q(i) - before.q(i);
       // Within a tick of constant acceleration a, the position leaves the interval between its end points by h²|a|/8 at
       // most.
-      const Scalar between = kLevel == Level::kVelocity ? Scalar(0) : h * h / Scalar(8) * abs(last_(i));
+      const Scalar between = kLevel == Level::kVelocity ? Scalar(0) : h * h / Scalar(8) * std::abs(last_(i));
       result.low(i) = std::min(tick, Scalar(0)) - between + low;
       result.high(i) = std::max(tick, Scalar(0)) + between + high;
     }
@@ -106,7 +104,7 @@ class StopPlan {
     JointVector u(before.size());
     for (Eigen::Index i = 0; i < u.size(); ++i) {
       if (stops_alone(i)) {
-        u(i) = quickest(limits, i, state, before);
+        u(i) = brake_alone(limits, i, state, before);
       } else if (k_ < ramp_ticks_) {
         u(i) = last_(i) * (Scalar(1) - (k_ + Scalar(1)) / ramp_ticks_);
       } else if (k_ + Scalar(1) < profile_.ticks()) {
@@ -124,10 +122,9 @@ class StopPlan {
 
   /// coasting_ticks() without rounding to whole ticks, approximately: a continuous function of the state.
   [[nodiscard]] Scalar smooth_coasting_ticks(const MotionLimits& limits) const noexcept {
-    using std::abs;
     Scalar most(0);
     for (Eigen::Index i = 0; i < velocity_.size(); ++i) {
-      const Scalar speed = abs(velocity_(i));
+      const Scalar speed = std::abs(velocity_(i));
       if (!(speed > Scalar(0))) continue;
       const Scalar deceleration = limits.bounds().acceleration(i);
       const Scalar distance = limits.bounds_jerk(i)
@@ -157,9 +154,8 @@ class StopPlan {
   /// bound on jerk are multiples of `change` up to the round-off error of a difference of velocities, about 300 ε for
   /// 2 rad/s, 1 ms and 7500 rad/s³. Because of the tolerance of 512 ε, the round-off error does not add a tick.
   [[nodiscard]] static Scalar ticks_for(Scalar acceleration, Scalar change) noexcept {
-    using std::ceil;
     constexpr Scalar kRoundOff = Scalar(512) * std::numeric_limits<Scalar>::epsilon();
-    return ceil((Scalar(1) - kRoundOff) * (acceleration / change));
+    return std::ceil((Scalar(1) - kRoundOff) * (acceleration / change));
   }
 
   [[nodiscard]] bool stops_alone(Eigen::Index i) const noexcept { return (stops_alone_ >> i & 1U) != 0; }
@@ -183,47 +179,13 @@ class StopPlan {
   /// synchronised stop is neither faster nor longer.
   [[nodiscard]] bool keeps_bounds(const MotionLimits& limits, Eigen::Index i,
                                   const State<N, Scalar>& start) const noexcept {
-    using std::abs;
     const Scalar after_ramp = velocity_(i);
     const Scalar v = start.qd(i) * after_ramp > after_ramp * after_ramp ? start.qd(i) : after_ramp;
-    if (!(abs(v) <= limits.bounds().velocity(i))) return false;
+    if (!(std::abs(v) <= limits.bounds().velocity(i))) return false;
     const Scalar h = limits.tick();
     const Scalar coasting = h * (ramp_ticks_ + profile_.ramp - Scalar(1));
-    const Scalar deceleration = abs(after_ramp) / (h * (profile_.brake - profile_.ramp + Scalar(1)));
+    const Scalar deceleration = std::abs(after_ramp) / (h * (profile_.brake - profile_.ramp + Scalar(1)));
     return limits.allows_stop(i, start.q(i) + coasting * v, v, deceleration);
-  }
-
-  /// Acceleration of the next tick in the shortest stop of joint i alone.
-  [[nodiscard]] static Scalar quickest(const MotionLimits& limits, Eigen::Index i, const State<N, Scalar>& state,
-                                       const JointVector& before) noexcept {
-    const Scalar most = limits.bounds().acceleration(i);
-    if (!limits.bounds_jerk(i)) return std::clamp(-state.qd(i) / limits.tick(), -most, most);
-    const auto joint = limits.jerk_limited(i);
-    const bool within = limits.bounds().lower(i) <= state.q(i) && state.q(i) <= limits.bounds().upper(i);
-    if (!within) return joint.brake(state.qd(i), before(i));  // A joint beyond its range stops there.
-    const auto [low, high] = joint.viable(joint.after(before(i)), state.q(i), state.qd(i));
-    return std::clamp(joint.brake(state.qd(i), before(i)), low, high);
-  }
-
-  /// Bounds on the displacement in the shortest stop of joint i alone [rad] or [m].
-  [[nodiscard]] Interval<Scalar> single_stop_displacement(const MotionLimits& limits, Eigen::Index i,
-                                                          Scalar qd) const noexcept {
-    using std::abs;
-    const Scalar h = limits.tick();
-    const Scalar most = limits.bounds().acceleration(i);
-    if (!limits.bounds_jerk(i)) {
-      const Scalar distance = abs(qd) * (abs(qd) / most + h) / Scalar(2);
-      return qd > Scalar(0) ? Interval<Scalar>{Scalar(0), distance} : Interval<Scalar>{-distance, Scalar(0)};
-    }
-    // Upper bound: the velocity never exceeds `top`. The joint moves at `top` until the acceleration is zero, and then
-    // makes the shortest stop from `top`.
-    const Scalar jerk = limits.bounds().jerk(i);
-    const Scalar ramp = abs(last_(i)) / jerk;
-    const Scalar top = abs(qd) + abs(last_(i)) * ramp / Scalar(2);
-    const Scalar distance = top * (ramp + Scalar(2) * h) + QuickestStop<Scalar>{most, jerk}.stopping_distance(top);
-    const bool forth = qd > Scalar(0) && velocity_(i) >= Scalar(0);
-    const bool back = qd < Scalar(0) && velocity_(i) <= Scalar(0);
-    return {forth ? Scalar(0) : -distance, back ? Scalar(0) : distance};
   }
 
   StopProfile<Scalar> profile_;    ///< For the synchronised stop.

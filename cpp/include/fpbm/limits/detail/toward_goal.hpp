@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fpbm/limits/detail/goals.hpp"
 #include "fpbm/limits/detail/one_level.hpp"
 
 namespace fpbm {
@@ -27,6 +28,23 @@ template <typename Saturation, typename Found, int N, int P, typename Scalar>
   resolve_lower(saturation, box, goal, next);
   multiply_scales(next, found);
   return next;
+}
+
+/// Second pass of Limiter with bounds on jerk: moves toward `found`, and the first level toward its motion `first`.
+/// last: acceleration of the last tick. box: Limits::box() after `last`.
+template <typename Tasks, Level kLevel, typename Saturation, typename Found, int N, int P, typename Scalar>
+[[nodiscard]] Found second_pass(const Limits<kLevel, N, Scalar>& limits, Saturation& saturation,
+                                const State<N, Scalar>& state, const Vector<N, Scalar>& last, const Box<N, Scalar>& box,
+                                const Rows<N, P, Scalar>& rows, const Vector<N, Scalar>& first,
+                                const Found& found) noexcept {
+  const Vector<N, Scalar> steady = box.nearest(motions(limits, state.qd, last));
+  if constexpr (kHasLower<Tasks>) {
+    const auto goals = approach(limits, state.qd, first, found.u);
+    return toward_goal(saturation, box, rows, steady, goals.first, goals.all, found);
+  } else {
+    const Vector<N, Scalar> goal = approach(limits, state.qd, found.u, found.u).first;
+    return toward_goal(saturation, box, rows, steady, goal, goal, found);
+  }
 }
 
 }  // namespace fpbm

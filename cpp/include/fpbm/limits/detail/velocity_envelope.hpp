@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 #include "fpbm/core/detail/quickest_stop.hpp"
 #include "fpbm/core/types.hpp"
@@ -78,6 +79,20 @@ struct VelocityEnvelope {
       v = top - b * b / (Scalar(2) * jerk);
     }
     return from.a <= -b ? value(from) : value(from.ahead(until + b / jerk, -jerk));
+  }
+
+  /// Upper bound on the excess that a stop adds to q − r [rad] or [m]: v (t + c/d + v/2d) for velocities up to
+  /// v = fastest [rad/s], if G is largest within the time t = longest [s].
+  [[nodiscard]] Scalar excess_bound(Scalar fastest, Scalar longest) const noexcept {
+    return fastest * (longest + delay + fastest * softness / Scalar(2));
+  }
+
+  /// Round-off error of G at the position q [rad] or [m]. The distance to the end has an error of at most ε (|q| +
+  /// |r|). The factor 8 also covers the other terms of G.
+  [[nodiscard]] Scalar round_off(Scalar q) const noexcept {
+    return std::isfinite(stop_position)
+               ? Scalar(8) * std::numeric_limits<Scalar>::epsilon() * (std::abs(q) + std::abs(stop_position))
+               : Scalar(0);
   }
 };
 

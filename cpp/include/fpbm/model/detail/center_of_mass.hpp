@@ -91,8 +91,8 @@ void center_of_mass(const Robot<N, Scalar, Joints>& robot, const RobotState<N, S
       column_rates.coeffRef(k, link - 1) = state.moves ? factor * column_rate.coeff(k) : Scalar(0);
     }
   }
-  robot.set_by_drive(columns, J);
-  robot.set_by_drive(column_rates, Jd);
+  robot.drives().set_by_drive(columns, J);
+  robot.drives().set_by_drive(column_rates, Jd);
 }
 
 }  // namespace fpbm

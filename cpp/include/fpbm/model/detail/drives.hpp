@@ -84,18 +84,38 @@ class Drives {
       return gradient;
     }
   }
-  /// Columns of the drives from columns of the joints.
+  /// Sets columns of the drives from columns of the joints.
   template <int M>
-  [[nodiscard]] Matrix<M, N, Scalar> by_drive(const Matrix<M, Joints, Scalar>& columns) const noexcept {
-    Matrix<M, N, Scalar> result;
-    result.resize(columns.rows(), count());
-    for (Eigen::Index k = 0; k < result.size(); ++k) result.coeffRef(k) = Scalar(0);
-    for (Eigen::Index i = 0; i < columns.cols(); ++i) {
-      for (Eigen::Index row = 0; row < columns.rows(); ++row) {
-        result.coeffRef(row, drive(i)) += ratio_.coeff(i) * columns.coeff(row, i);
+  void set_by_drive(const Matrix<M, Joints, Scalar>& columns, Matrix<M, N, Scalar>& to) const noexcept {
+    if constexpr (kMayFollow) {
+      to.resize(columns.rows(), count());
+      for (Eigen::Index k = 0; k < to.size(); ++k) to.coeffRef(k) = Scalar(0);
+      for (Eigen::Index i = 0; i < columns.cols(); ++i) {
+        for (Eigen::Index row = 0; row < columns.rows(); ++row) {
+          to.coeffRef(row, drive(i)) += ratio_.coeff(i) * columns.coeff(row, i);
+        }
       }
+    } else {
+      to = columns;
     }
-    return result;
+  }
+  /// Calls f(i, columns, rates) with columns i and i + 1 of J and J̇ of the drives. The column of a drive is a sum over
+  /// joints. of_joints(set) calls set(i, columns, rates) for the joints.
+  template <typename Columns, typename OfJoints, typename F>
+  void each_column(const OfJoints& of_joints, const F& f) const noexcept {
+    Matrix<6, Joints, Scalar> J;
+    Matrix<6, Joints, Scalar> Jd;
+    J.resize(6, ratio_.size());
+    Jd.resize(6, ratio_.size());
+    of_joints([&](Eigen::Index i, const auto& columns, const auto& rates) noexcept {
+      columns.store(J, i);
+      rates.store(Jd, i);
+    });
+    Matrix<6, N, Scalar> of_drives;
+    Matrix<6, N, Scalar> rates_of_drives;
+    set_by_drive(J, of_drives);
+    set_by_drive(Jd, rates_of_drives);
+    for (Eigen::Index i = 0; i < count(); i += 2) f(i, Columns::load(of_drives, i), Columns::load(rates_of_drives, i));
   }
 
   /// Index of the drive of joint i.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -21,9 +22,10 @@ class LinkTree {
   using Axes = Screws<Joints, Scalar>;
   using Columns = typename Axes::ColumnPair;
 
-  /// source: a checked Tree or Chain. Throws std::invalid_argument if the number of joints is not Joints.
+  /// joints: result of require_tree() or require_joints() for the source. Throws std::invalid_argument if the number of
+  /// joints is not Joints.
   template <typename Source>
-  explicit LinkTree(const Source& source) : pass_(size_of(source)) {
+  LinkTree(const Source& source, Eigen::Index joints) : pass_(checked(joints)) {
     for (Eigen::Index i = 0; i < pass_.dof(); ++i) {
       const auto& joint = joint_of(source, i);
       const int parent = parent_of(source, i);
@@ -143,9 +145,7 @@ class LinkTree {
     }
   }
 
-  template <typename Source>
-  [[nodiscard]] static Eigen::Index size_of(const Source& source) {
-    const auto joints = static_cast<Eigen::Index>(source.joints.size());
+  [[nodiscard]] static Eigen::Index checked(Eigen::Index joints) {
     if constexpr (Joints != Eigen::Dynamic) validation::require_size("joints", joints, Joints);
     return joints;
   }
@@ -175,6 +175,19 @@ template <typename Scalar, typename Source>
     if (link > 0) length += norm(joint.placement.p);
   }
   return length;
+}
+
+/// Length of the longest chain to a joint or a frame of a tree [m].
+template <typename Scalar, typename Tree_>
+[[nodiscard]] Scalar longest_chain(const Tree_& tree) {
+  Scalar longest(0);
+  for (std::size_t link = 1; link <= tree.joints.size(); ++link) {
+    longest = std::max(longest, chain_length<Scalar>(tree, static_cast<Eigen::Index>(link)));
+  }
+  for (const auto& [name, link, offset] : tree.frames) {
+    if (link > 0) longest = std::max(longest, chain_length<Scalar>(tree, link) + norm(offset.p));
+  }
+  return longest;
 }
 
 }  // namespace fpbm

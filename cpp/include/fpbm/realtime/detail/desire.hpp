@@ -71,6 +71,31 @@ template <typename Arm, typename Scheme, typename TrackerState, typename Space, 
   return desired;
 }
 
+/// desire() for a tick whose motion u is computed elsewhere (TrackerBatch), after begin_correction(). now: reference at
+/// the start of the tick, not corrected. references: corrected. rows: TrackerState::rows() of u, and after the call, of
+/// the desired motion.
+template <typename Arm, typename Scheme, typename TrackerState, typename References, typename Rows>
+[[nodiscard]] auto desire_given(const Arm& arm, const Scheme& scheme, TrackerState& state,
+                                const typename TrackerState::Target& now, const References& references,
+                                const typename TrackerState::JointVector& u, Rows& rows) noexcept {
+  using Space = typename TrackerState::Space;
+  using Scalar = typename TrackerState::Scalar;
+  const auto& joints = state.tick.joints;
+  Desired<ClosedLoop<Arm, Scheme, Space>, Space, Arm::kDof, Scalar> desired{
+      {arm, scheme, {}, joints, filled<typename TrackerState::JointVector>(joints.q.size())}, now, u};
+  const bool moves_away = state.bounds.moves_away();
+  if (moves_away || state.stopping || !state.admits(rows, u)) {
+    points_of(arm, joints.q, desired.loop.kinematics, 0);
+    (void)state.tick.update_middle(desired.loop, references, gains_of<Scalar>(scheme));
+  }
+  if (moves_away) {
+    move_away(state, desired);
+    rows = state.rows(desired.u);
+  }
+  state.tick.reference_change = references.change();
+  return desired;
+}
+
 /// desire() for a measured state: the accelerations of the scheme in this state.
 template <typename Arm, typename Scheme, typename TrackerState, typename Target>
 [[nodiscard]] auto desire_measured(const Arm& arm, const Scheme& scheme, TrackerState& state,

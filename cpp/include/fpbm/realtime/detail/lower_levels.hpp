@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <limits>
 #include <tuple>
-#include <type_traits>
 
 #include "fpbm/linalg/detail/sums.hpp"
 #include "fpbm/path/reference.hpp"
@@ -20,12 +19,12 @@ namespace fpbm {
 /// Stops the tasks of lower levels that do not approach their targets. Otherwise, tasks of lower levels could oscillate
 /// or drift in the null space of the higher levels while limits slow the tasks, and the robot would not stop.
 ///
-/// The largest error of each task in a window of stall_time is compared with the largest errors in earlier windows. A
-/// task makes progress if its error is below 15/16 of the errors of all earlier windows. A task of a lower level stops
-/// if it makes no progress, its error exceeds 0.0001, no target has moved by 0.002 (TaskDistance), and no task makes
-/// progress of more than 0.002. A stopped task brakes: its reference is its current point at zero velocity, until the
-/// task and the joints are at rest or the next window ends. Then the task holds this point. If the task leaves this
-/// point by more than 0.000025 while all other tasks are at their targets, all joints brake.
+/// A task makes progress in a window of stall_time if its largest error is below 15/16 of its largest errors in all
+/// earlier windows. A task of a lower level stops if it makes no progress, its error exceeds 0.0001, no target has
+/// moved by 0.002 (TaskDistance), and no task makes progress of more than 0.002. A stopped task brakes: its reference
+/// is its current point at zero velocity, until the task and the joints are at rest or the next window ends. Then the
+/// task holds this point. If the task leaves this point by more than 0.000025 while all other tasks are at their
+/// targets, all joints brake.
 ///
 /// All tasks follow their references again if a target of any level or a shape near the arm moves, and after a tick
 /// that does not follow the references.
@@ -58,9 +57,8 @@ class LowerLevels {
     return true;
   }
 
-  /// Whether all joints should brake: tasks have stopped, and no task has approached its target for kQuiet windows, or
-  /// a stopped task has left its point. Otherwise, null-space motion could continue for minutes, or a limit cycle of
-  /// the limits could move a stopped task.
+  /// Whether all joints should brake: a stopped task has left its point, or tasks have stopped and no task has
+  /// approached its target for kQuiet windows. Otherwise, null-space motion could continue for minutes.
   [[nodiscard]] bool rests() const noexcept { return quiet_ >= kQuiet || displaced_; }
 
   /// Sets the scale of each level with a stopped task to 0.
@@ -106,9 +104,7 @@ class LowerLevels {
           Distance::between(std::get<kIndex>(target), std::get<kIndex>(target_), kinematics.length);
       moved = moved || displacement > kMoved;
       displacements += displacement;
-      Vector<Part::kRows, Scalar> part;
-      for (int j = 0; j < Part::kRows; ++j) part(j) = errors.coeff(row + j);
-      const Scalar error = Distance::norm(part, kinematics.length);
+      const Scalar error = Distance::norm(errors.template segment<Part::kRows>(row), kinematics.length);
       counts_[kIndex] = error > kSmall && kinematics.is_enabled(kIndex) && !stopped_[kIndex];
       if (counts_[kIndex]) peak_[kIndex] = std::max(peak_[kIndex], error);
     });
@@ -126,8 +122,7 @@ class LowerLevels {
     if (time_ > stall_time_) end_window();
   }
 
-  /// Stops tasks at the end of a window. In the first window, every task makes progress, since the errors of earlier
-  /// windows are infinite.
+  /// Stops tasks at the end of a window, except of the first window: the errors of earlier windows are infinite.
   void end_window() noexcept {
     bool progress = false;
     bool settled = any_stopped_;
@@ -152,8 +147,7 @@ class LowerLevels {
     quiet_ = settled ? quiet_ + 1 : 0;
   }
 
-  /// Until a stopped task and the joints are at rest, or until the end of the next window, its current point is its
-  /// reference: the task brakes. Then the task holds its point.
+  /// Sets the point of a stopped task, unless the task holds its point.
   template <std::size_t kIndex, typename Part, typename PartPoint>
   void hold_at_rest(const PartPoint& tip, Scalar length) noexcept {
     const Scalar moved = TaskDistance<Part, Scalar>::between(tip, std::get<kIndex>(point_), length);
@@ -166,11 +160,9 @@ class LowerLevels {
   }
 
   static constexpr std::size_t kTasks = std::tuple_size_v<Point>;
-  /// Smallest displacement of a target or of shapes that counts, and smallest progress that counts, as
-  /// TaskDistance::kProgress.
+  /// Smallest displacement of a target or of shapes, and smallest progress, that counts: as TaskDistance::kProgress.
   static constexpr Scalar kMoved = Scalar(2e-3);
-  /// Largest joint velocity [rad/s] at rest, as in the tests of stacks.
-  static constexpr Scalar kRest = Scalar(1e-3);
+  static constexpr Scalar kRest = Scalar(1e-3);  ///< Largest joint velocity [rad/s] at rest, as in the tests of stacks.
   static constexpr Scalar kSmall = Scalar(1e-4);  ///< As in StallDetector: 0.1 mm for an arm of 1 m.
   /// Largest task velocity [lengths/s, rad/s] of a stopped task that begins to hold its point. With 0.001, a motion of
   /// LowerLevels.stay_where_they_stopped_at_acceleration_level ends 1.4e-4 from its point, and with 0.0001, 2.5e-5.
@@ -178,7 +170,6 @@ class LowerLevels {
   /// Relative decrease of the error that counts as progress, as for a crawling arm (StallDetector). An error that
   /// decreases by 1/16 in each window of 2 s is 1 % of its start after 143 s.
   static constexpr Scalar kApproach = Scalar(1) / Scalar(16);
-
   /// Windows in which a rest posture moves the joints in the null space, 20 s by default. The value is a choice.
   static constexpr int kQuiet = 10;
 
@@ -201,9 +192,9 @@ class LowerLevels {
   Point point_ = Space::template origin<Scalar>();  ///< Points of stopped tasks.
 };
 
-template <typename... Levels, typename Scalar>
-struct LowerLevelsOf<StackSpace<Levels...>, Scalar> {
-  using type = std::conditional_t<(sizeof...(Levels) == 1), NoLowerLevels, LowerLevels<StackSpace<Levels...>, Scalar>>;
+template <typename First, typename Second, typename... More, typename Scalar>
+struct LowerLevelsOf<StackSpace<First, Second, More...>, Scalar> {
+  using type = LowerLevels<StackSpace<First, Second, More...>, Scalar>;
 };
 
 }  // namespace fpbm

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 #include "fpbm/core/types.hpp"
 #include "fpbm/limits/limits.hpp"
 #include "fpbm/model/detail/continuous_joints.hpp"
-#include "fpbm/realtime/detail/task_distance.hpp"
+#include "fpbm/realtime/detail/posture_memory.hpp"
 
 namespace fpbm {
 
@@ -26,13 +25,12 @@ namespace fpbm {
 /// causes at most kPostures + 1 recoveries. If an arm with an unreachable target has stalled nearer to the target than
 /// every remembered tip, the target causes no recovery.
 template <typename Space, int N, typename Scalar = double>
-class Recovery {
+class Recovery : public PostureMemory<Space, N, Scalar> {
  public:
+  using PostureMemory<Space, N, Scalar>::kPostures;
   using JointVector = Vector<N, Scalar>;
   using Point = typename Space::template Point<Scalar>;
   using Distance = TaskDistance<Space, Scalar>;
-
-  static constexpr int kPostures = 8;  ///< Remembered postures. For seven joints and a pose, the memory has 1.3 kB.
 
   /// patience: time without progress toward the posture after which a recovery ends [s]. dt: length of a tick [s].
   /// continuous: bits of the continuous joints.
@@ -42,30 +40,10 @@ class Recovery {
   /// Whether the joints are moving to a remembered posture.
   [[nodiscard]] bool active() const noexcept { return active_; }
 
-  /// Whether a posture differs from the last posture passed to remember() by more than kNewJoint in some joint.
-  [[nodiscard]] bool is_new(const JointVector& q) const noexcept {
-    if (count_ == 0) return true;
-    for (Eigen::Index i = 0; i < q.size(); ++i) {
-      if (std::abs(q(i) - last_remembered_(i)) > kNewJoint) return true;
-    }
-    return false;
-  }
-
-  /// Remembers a posture in which the whole task is executed, and its tip, unless a remembered tip is within kSpread.
-  /// If the memory is full, the posture replaces the older of the two postures whose tips are nearest to each other.
-  /// length: the arm's characteristic length [m].
-  [[gnu::cold, gnu::noinline]] void remember(const JointVector& q, const Point& tip, Scalar length) noexcept {
-    last_remembered_ = q;
-    for (int i = 0; i < count_; ++i) {
-      if (Distance::between(memory_[i].tip, tip, length) < kSpread) return;
-    }
-    memory_[count_ < kPostures ? count_++ : most_crowded(length)] = {q, tip, ++age_};
-  }
-
   /// Call after a tick that does not execute the whole task. Updates the largest distance of the target from the
   /// remembered tips.
   void follow(const Point& target, Scalar length) noexcept {
-    farthest_ = std::max(farthest_, nearest(target, length).distance);
+    farthest_ = std::max(farthest_, this->nearest(target, length).distance);
   }
   /// Call after a tick that executes the whole task.
   void settle() noexcept { farthest_ = Scalar(0); }
@@ -77,12 +55,12 @@ class Recovery {
   [[gnu::cold, gnu::noinline]] bool begin(const JointVector& q, const Point& target, Scalar error,
                                           Scalar length) noexcept {
     if (count_of_target_ > kPostures) return false;
-    const auto [distance, best] = nearest(target, length);
+    const auto [distance, best] = this->nearest(target, length);
     const Scalar bound = std::min(error, last_distance_);
     const bool nearer = distance < bound - Distance::step(bound);
     if (!nearer && (returned_ || !(distance < kReturned * farthest_))) return false;
     returned_ = returned_ || !nearer;
-    start(q, nearest_turns(memory_[best].q, q, continuous_), distance, kArrived);
+    start(q, nearest_turns(this->posture(best), q, continuous_), distance, kArrived);
     return true;
   }
 
@@ -137,13 +115,10 @@ class Recovery {
 
  private:
   // The values below are not tuned. `fpbm_tests --gtest_filter='Recovery.brings*'` prints how many arms do not return.
-  static constexpr Scalar kNewJoint =
-      Scalar(0.1);                                 ///< Change of a joint that may move the tip by kSpread [rad] or [m].
-  static constexpr Scalar kSpread = Scalar(0.05);  ///< Smallest distance of two remembered tips, as TaskDistance.
   /// If the distance of the target is below this fraction of its largest distance, the target has returned.
   static constexpr Scalar kReturned = Scalar(0.5);
-  static constexpr Scalar kRate =
-      Scalar(2);  ///< Rate of the approach [1/s]. Both poles of the acceleration are at −2 kRate.
+  /// Rate of the approach [1/s]. Both poles of the acceleration are at −2 kRate.
+  static constexpr Scalar kRate = Scalar(2);
   static constexpr Scalar kArrived = Scalar(0.02);  ///< Fraction of the initial distance that counts as arrived.
 
   /// Fraction of the initial distance at which a recovery to a posture of leave() ends.
@@ -165,47 +140,9 @@ class Recovery {
     return std::sqrt(entrywise(q, [&](Eigen::Index i) { return (goal_(i) - q(i)) * (goal_(i) - q(i)); }).sum());
   }
 
-  struct Remembered {
-    JointVector q;
-    Point tip;
-    std::int64_t age;
-  };
-
-  struct Nearest {
-    Scalar distance;
-    int index;
-  };
-  [[nodiscard]] Nearest nearest(const Point& target, Scalar length) const noexcept {
-    Nearest found{std::numeric_limits<Scalar>::infinity(), 0};
-    for (int i = 0; i < count_; ++i) {
-      const Scalar distance = Distance::between(target, memory_[i].tip, length);
-      if (distance < found.distance) found = {distance, i};
-    }
-    return found;
-  }
-
-  /// Index of the older of the two postures whose tips are nearest to each other.
-  [[nodiscard]] int most_crowded(Scalar length) const noexcept {
-    int index = 0;
-    Scalar least = std::numeric_limits<Scalar>::infinity();
-    for (int i = 1; i < count_; ++i) {
-      for (int j = 0; j < i; ++j) {
-        const Scalar distance = Distance::between(memory_[i].tip, memory_[j].tip, length);
-        if (!(distance < least)) continue;
-        least = distance;
-        index = memory_[i].age < memory_[j].age ? i : j;
-      }
-    }
-    return index;
-  }
-
   Scalar patience_;
   Scalar dt_;
   JointBits continuous_;
-  Remembered memory_[kPostures]{};
-  int count_ = 0;
-  std::int64_t age_ = 0;
-  JointVector last_remembered_;  ///< Last posture passed to remember().
   JointVector goal_;
   /// Distance from the target to the tip of the last recovery.
   Scalar last_distance_ = std::numeric_limits<Scalar>::infinity();

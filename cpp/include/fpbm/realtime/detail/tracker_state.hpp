@@ -89,9 +89,29 @@ struct TrackerState {
            is_finite(entrywise(joints.qd, [&](Eigen::Index i) { return joints.qd.coeff(i) * rate; }));
   }
 
-  /// Throws std::invalid_argument if a start after a tick with the acceleration `last` violates a bound, or if the arm
-  /// cannot stop within the bounds.
-  void require_bounds(const JointState& start, const JointVector& last) {
+  /// Throws std::invalid_argument if the start, or a limit, is not for dof joints, an option is out of range, or the
+  /// start violates a limit and options.recover_start is false.
+  void require_start(const TrackerOptions<Scalar>& options, Eigen::Index dof) const {
+    const JointState& start = tick.joints;
+    validation::require_size("limits", limits().bounds().lower.size(), dof);
+    if (limits().tick() != options.dt) {
+      validation::fail("limits' tick", limits().tick(), "the tracker's dt = ", options.dt);
+    }
+    validation::require_joint_vector("q0", start.q, dof);
+    validation::require_joint_vector("qd0", start.qd, dof);
+    validation::require_joint_vector("qdd0", tick.last, dof);
+    if (options.recover_start) {
+      limits().require_accelerations(start, tick.last);
+    } else {
+      limits().require_viable(start, tick.last);
+    }
+    validation::require_non_negative("null_damping", options.null_damping);
+  }
+
+  /// Throws std::invalid_argument if the start violates a bound, or if the arm cannot stop within the bounds.
+  void require_bounds() {
+    const JointState& start = tick.joints;
+    const JointVector& last = tick.last;
     bounds.require(start.q);
     if (bounds.empty()) return;
     for (Eigen::Index i = 0; i < start.q.size() && !limits().is_viable(start, last); ++i) {

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
+#include "fpbm/core/detail/unrolled.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/geometry/space.hpp"
@@ -24,10 +26,10 @@ namespace fpbm {
 ///   u_k = u_{k−1} + Z (J_k Z)⁺ (b_k − J_k u_{k−1}),   Z a basis of the null space of J₁ … J_{k−1},
 ///
 /// with b_k = S (xdd + k₁(xd − ẋ) + k₂(x ⊖ f(q))) − J̇_k qd for each task, or b_k = S (xd + k (x ⊖ f(q))) at velocity
-/// level, all rows in metres. In a tick, continue_tick() defines b_k and J_k. Directions of a level
-/// that are lost because of the posture or of higher levels are damped (DampedLevel). The null-space motion of `scheme`
-/// determines the motion that no task determines: while directions of a lower level are damped, the posture-dependent
-/// part of z is projected on the null space of all levels (docs/singularities.md, Secondary motion).
+/// level, all rows in metres. In a tick, continue_tick() defines b_k and J_k. Directions of a level that are lost
+/// because of the posture or of higher levels are damped (DampedLevel). The null-space motion of `scheme` determines
+/// the motion that no task determines: while directions of a lower level are damped, the posture-dependent part of z is
+/// projected on the null space of all levels (docs/singularities.md, Secondary motion).
 template <typename Scheme, typename Stack_>
 struct ByLevels {
   using Scalar = typename Stack_::Scalar;
@@ -40,8 +42,7 @@ struct ByLevels {
   Scheme scheme;
   Scalar radius;  ///< ε of the damping of lower levels, for the rows of ScaledLevel.
 
-  /// scheme: without feedback gains, since the tasks have gains. Throws std::invalid_argument if the radius is not in
-  /// [0, 1].
+  /// scheme: without feedback gains, since the tasks have gains. Throws std::invalid_argument unless 0 ≤ radius ≤ 1.
   explicit ByLevels(const Scheme& scheme_, Scalar radius_ = kLevelRadius<Scalar>) : scheme(scheme_), radius(radius_) {
     validation::require_fraction("radius", radius);
   }
@@ -49,8 +50,7 @@ struct ByLevels {
   void require_dof(Eigen::Index dof) const { scheme.require_dof(dof); }
 
   /// Joint accelerations [rad/s²], or velocities [rad/s]. A level whose references are not finite is ignored. If the
-  /// first level fails, u does not change. first: set
-  /// to the motion of the first level alone, unless null.
+  /// first level fails, u does not change. first: set to the motion of the first level alone, unless null.
   [[nodiscard]] Status resolve(const Kinematics<Space, kDof, Scalar>& kinematics,
                                const Reference<Space, Scalar>& reference, const State<kDof, Scalar>& state,
                                JointVector& u, JointVector* first = nullptr) const noexcept {
@@ -79,8 +79,8 @@ struct ByLevels {
     JointVector secondary;
     Status status = Status::kOk;
     Scalar fade(1);
-    each_level([&](auto k) noexcept {
-      constexpr int kIndex = decltype(k)::value;
+    each(Constant<0>{}, Constant<Stack_::kLevels>{}, [&](auto k) noexcept {
+      constexpr int kIndex = decltype(k)::kIndex;
       const auto& level = std::get<kIndex>(kinematics.levels);
       constexpr int M = Stack_::kRows[kIndex];
       if (kIndex > 0 && (failed(status) || !kinematics.enabled[kIndex] || level.rows() == 0)) return;
@@ -118,28 +118,14 @@ struct ByLevels {
     return failed(status) ? filled<JointVector>(q.size()) : motion;
   }
 
-  template <typename F>
-  static void each_level(F&& f) noexcept {
-    each_level(f, std::make_index_sequence<Stack_::kLevels>{});
-  }
-  template <typename F, std::size_t... k>
-  static void each_level(F& f, std::index_sequence<k...>) noexcept {
-    (f(std::integral_constant<int, static_cast<int>(k)>{}), ...);
-  }
-
-  /// r −= J̇ qd at acceleration level, or r −= drift in a tick.
-  template <int M>
-  static void subtract_drift(Scalar tick, const LevelRows<M, kDof, Scalar>& level, const JointVector& qd,
-                             Vector<M, Scalar>& r) noexcept {
+  /// r −= J̇ qd at acceleration level, or r −= drift in a tick. J̇ of a posture is 0.
+  template <typename Rows_, int M>
+  static void subtract_drift(Scalar tick, const Rows_& level, const JointVector& qd, Vector<M, Scalar>& r) noexcept {
     if (tick > Scalar(0)) {
       r -= level.drift;
-    } else if constexpr (kLevel == Level::kAcceleration) {
+    } else if constexpr (kLevel == Level::kAcceleration && !std::is_same_v<Rows_, PostureRows<kDof, Scalar>>) {
       r -= product(level.Jd, qd);
     }
-  }
-  static void subtract_drift(Scalar tick, const PostureRows<kDof, Scalar>& level, const JointVector&,
-                             JointVector& r) noexcept {
-    if (tick > Scalar(0)) r -= level.drift;
   }
 
   /// Returns u_k − u_{k−1} of a lower level, and adds the level to the space. Returns zero if the rows are not finite.

@@ -77,7 +77,7 @@ class FactorSolver {
     y = last(solutions_.project(repeated(y)));
     if constexpr (kDamped) {
       if (z.null_space.template active<Level::kVelocity>()) {
-        const Vector<N, Scalar> u = weights_.inverse_root(z.null_space.position_part(z.state));
+        const Vector<N, Scalar> u = weights_.inverse_root(z.null_space.template at<Level::kVelocity>(z.state));
         y = sum_of(y, last(solutions_.secondary(repeated(u), task_.b)));
       }
     }

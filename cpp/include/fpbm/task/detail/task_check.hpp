@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+
 #include "fpbm/core/detail/has_member.hpp"
 
 namespace fpbm {
@@ -31,5 +33,21 @@ template <typename Task>
   static_assert(kHas<Task, task_member::Gains>, "a task needs `fpbm::TaskGains<> gains`");
   return true;
 }
+
+/// Number of rows of a task, which may be known at run time (Task::kRows = Eigen::Dynamic).
+template <typename Task>
+[[nodiscard]] constexpr int rows_of([[maybe_unused]] const Task& task) noexcept {
+  if constexpr (Task::kRows == Eigen::Dynamic) {
+    return task.rows();
+  } else {
+    return Task::kRows;
+  }
+}
+
+/// Whether a task has positions of joints: whether it names the joint of each row.
+template <typename Task, typename = void>
+inline constexpr bool kIsPosture = false;
+template <typename Task>
+inline constexpr bool kIsPosture<Task, std::void_t<decltype(std::declval<const Task&>().joint(0))>> = true;
 
 }  // namespace fpbm
