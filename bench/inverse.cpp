@@ -86,8 +86,10 @@ class Arm {
     constexpr double kHalfTurn = fpbm::kTwoPi / 2;
     Joints q;
     for (int i = 0; i < N; ++i) {
-      q(i) = std::uniform_real_distribution<>(std::max(arm_.limits().lower(i), -kHalfTurn),
-                                              std::min(arm_.limits().upper(i), kHalfTurn))(engine_);
+      const double lower = arm_.limits().lower(i);
+      const double upper = arm_.limits().upper(i);
+      const bool turns = upper - lower > fpbm::kTwoPi;
+      q(i) = std::uniform_real_distribution<>(turns ? -kHalfTurn : lower, turns ? kHalfTurn : upper)(engine_);
     }
     return q;
   }

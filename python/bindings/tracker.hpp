@@ -57,7 +57,7 @@ class AnyTracker {
   /// Throws std::invalid_argument if the scheme is of velocity level.
   [[nodiscard]] virtual Result resolve_measured(const State<kDynamic>& measured, const Reference<Space>& reference) = 0;
 
-  /// Of a stack; without an effect and false for a single task.
+  /// Levels of a stack. For a single task, the result is false, without an effect.
   virtual bool enable(int level, bool on) noexcept = 0;
   virtual bool reorder(const std::array<int, AnyStack::kLevels>& order) noexcept = 0;
   virtual void stop() noexcept = 0;

@@ -122,7 +122,7 @@ template <typename... Levels, int N, typename Scalar>
   return std::get<0>(kinematics.levels).J;
 }
 
-/// Of the first level, in the units of the tasks: a unit of length on each row would multiply the value.
+/// Manipulability of the first level, in the units of the tasks: the lengths of the selections are divided out.
 template <typename... Levels, int N, typename Scalar>
 [[nodiscard]] Scalar manipulability(const Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics) noexcept {
   Scalar value = manipulability(first_rows(kinematics));
