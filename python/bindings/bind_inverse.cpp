@@ -254,8 +254,9 @@ class PyInverse {
   }
 
   /// Distinct postures, sorted by rank. Postures with equal values are sorted by the distance from the start.
-  [[nodiscard]] std::vector<PyPosture> solve_all(const py::object& target, const OptionalArray& start,
-                                                 std::size_t count, const std::string& rank) {
+  [[nodiscard]] std::vector<PyPosture> solve_all(const py::object& target, const OptionalArray& start, int count,
+                                                 const std::string& rank) {
+    if (count < 1) validation::fail("count", count, "at least 1");
     const std::vector<JointVector> starts{start_of(start)};
     const JointVector& q0 = starts[0];
     std::vector<PyPosture> found;
@@ -279,7 +280,8 @@ class PyInverse {
       return std::pair(sign * *one.rank_value, (one.found.q - q0).norm());
     };
     std::sort(found.begin(), found.end(), [&](const auto& a, const auto& b) { return place(a) < place(b); });
-    if (found.size() > count) found.erase(found.begin() + static_cast<std::ptrdiff_t>(count), found.end());
+    found.erase(found.begin() + std::min(static_cast<std::ptrdiff_t>(found.size()), std::ptrdiff_t{count}),
+                found.end());
     return found;
   }
 
@@ -530,9 +532,9 @@ first level of the stack; 'ranges', the largest distance from the ends of the ra
       "A posture for a target: InverseKinematics(arm, ...).solve(target, start).");
   model.def(
       "inverse_all",
-      [](const Model& self, const py::object& target, const OptionalArray& start, std::size_t count,
-         const std::string& rank_, const std::string& task_, const py::object& stack_, const py::object& limits_,
-         const py::object& bounds_, double tolerance_, int starts_, std::uint32_t seed_) {
+      [](const Model& self, const py::object& target, const OptionalArray& start, int count, const std::string& rank_,
+         const std::string& task_, const py::object& stack_, const py::object& limits_, const py::object& bounds_,
+         double tolerance_, int starts_, std::uint32_t seed_) {
         return solver_of(self, task_, stack_, limits_, bounds_, tolerance_, starts_, seed_)
             ->solve_all(target, start, count, rank_);
       },

@@ -193,6 +193,7 @@ def test_equal_ranks_are_sorted_by_distance() -> None:
     ("arguments", "message"),
     [
         ({"rank": "best"}, r"rank = 'best': must be 'distance', 'manipulability', 'ranges' or 'clearance'"),
+        ({"count": 0}, "count = 0: must be at least 1"),
         ({"rank": "clearance"}, r"rank = 'clearance': needs a Clearance.*give bounds=\[fp.Clearance"),
         ({"rank": "clearance", "bounds": [fp.TaskBounds(fp.PositionTask(), upper=9.0)]}, "needs a Clearance"),
     ],
