@@ -98,12 +98,12 @@ class Attempts {
   /// An attempt with a smaller cost, in squares of the characteristic length, does not give up: the target may be near
   /// a singular posture. Without this value, 6 of 30,000 poses of a Panda are not found with 256 starts.
   static constexpr double kNear = 1e-5;
-  /// Bound on the steps of an attempt, a multiple of its patience. Range: 16 to 64. With 8, a pose of a Panda needs 83
-  /// starts, with 16, at most 38 (`make inverse`).
+  /// Bound on the steps of an attempt, a multiple of its patience. Range: 16 to 64. With 8, a pose of an FR3 needs 76
+  /// starts, with 16, at most 63 (`make inverse`).
   static constexpr double kMostSteps = 16.0;
   /// Patience of start_given() from a start that is nearer than kNearStart characteristic lengths to the target.
-  /// Ranges: 12 to 100, and 0.03 to 0.3. Of 60,000 waypoints (`make inverse`), 3 more are not on the branch of their
-  /// start with a patience of 4, and 2 more with kNearStart = 0.01.
+  /// Ranges: 12 to 100, and 0.03 to 0.3. Of 80,000 waypoints (`make inverse`), 7 more are not on the branch of their
+  /// start with a patience of 4, and 6 more with kNearStart = 0.01.
   static constexpr double kPatienceNear = 32.0;
   static constexpr double kNearStart = 0.05;
 
