@@ -158,7 +158,7 @@ grasp: $(VENV)/package
 	build/bench/bench/bench_grasp $(MOTIONS)
 
 # Installs each library into an environment of its own, in build/inverse_peers. Needs a quarter of an hour.
-inverse: $(VENV)/package $(VENV)/test
+inverse: $(VENV)/package $(VENV)/test $(VENV)/peers
 	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN)
 	-tools/need.sh /usr/lib/python3/dist-packages/PyKDL$(call SUFFIX,/usr/bin/python3):python3-pykdl
 	cmake --preset bench
