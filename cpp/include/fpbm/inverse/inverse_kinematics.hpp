@@ -13,7 +13,6 @@
 #include "fpbm/inverse/detail/attempts.hpp"
 #include "fpbm/inverse/detail/joint_ranges.hpp"
 #include "fpbm/inverse/detail/start_search.hpp"
-#include "fpbm/model/manipulability.hpp"
 
 namespace fpbm {
 

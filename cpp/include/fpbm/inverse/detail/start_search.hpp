@@ -10,6 +10,8 @@
 #include "fpbm/inverse/detail/joint_ranges.hpp"
 #include "fpbm/inverse/detail/stack_search.hpp"
 #include "fpbm/inverse/detail/tip_search.hpp"
+#include "fpbm/model/manipulability.hpp"
+#include "fpbm/task/detail/stack_kinematics.hpp"
 
 namespace fpbm {
 
@@ -26,6 +28,16 @@ template <typename Other, typename Arm>
 /// StackSearch for a stack of tasks, or TipSearch for the tip of an arm.
 template <typename Arm, typename Space, typename Bounds_>
 using SearchOf = std::conditional_t<kIsProduct<Space>, StackSearch<Arm, Bounds_>, TipSearch<Arm, Space>>;
+
+/// Manipulability of the first level, in the units of the tasks: the lengths of the selections are divided out.
+template <typename... Levels, int N, typename Scalar>
+[[nodiscard]] Scalar manipulability(const Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics) noexcept {
+  Scalar value = manipulability(first_rows(kinematics));
+  kinematics.each_task([&](auto level, const auto& task, int) noexcept {
+    for (Eigen::Index i = 0; level == 0 && i < task.S.rows(); ++i) value /= task.S.row(i).norm();
+  });
+  return value;
+}
 
 /// Sets `best` to an attempt of Many, in a lane, that gave up nearer to the target. one: search of single postures.
 template <typename Many, typename One>

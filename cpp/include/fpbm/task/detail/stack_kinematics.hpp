@@ -7,7 +7,6 @@
 #include "fpbm/linalg/detail/product.hpp"
 #include "fpbm/linalg/detail/sums.hpp"
 #include "fpbm/model/kinematics.hpp"
-#include "fpbm/model/manipulability.hpp"
 #include "fpbm/task/detail/task_rows.hpp"
 #include "fpbm/task/detail/tick_feedback.hpp"
 #include "fpbm/task/posture_task.hpp"
@@ -120,16 +119,6 @@ struct Kinematics<StackSpace<Levels...>, N, Scalar> : StackKinematics<Stack<Leve
 template <typename... Levels, int N, typename Scalar>
 [[nodiscard]] const auto& first_rows(const Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics) noexcept {
   return std::get<0>(kinematics.levels).J;
-}
-
-/// Manipulability of the first level, in the units of the tasks: the lengths of the selections are divided out.
-template <typename... Levels, int N, typename Scalar>
-[[nodiscard]] Scalar manipulability(const Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics) noexcept {
-  Scalar value = manipulability(first_rows(kinematics));
-  kinematics.each_task([&](auto level, const auto& task, int) noexcept {
-    for (Eigen::Index i = 0; level == 0 && i < task.S.rows(); ++i) value /= task.S.row(i).norm();
-  });
-  return value;
 }
 
 template <typename... Levels, int N, typename Scalar>
