@@ -38,9 +38,9 @@ class Limiter {
   template <typename Tasks>
   using Result = decltype(with_scale(std::declval<const Tasks&>(), std::declval<const JointVector&>(), Scalar(1)));
 
-  /// reserve: fraction of each bound on acceleration that the levels below the first level leave to the first level.
-  /// They leave reserve/2 of each bound on velocity. 0: all levels share the limits. compensates: whether other joints
-  /// compensate for a joint that returns from beyond its range. Throws std::invalid_argument unless 0 ≤ reserve ≤ 1.
+  /// reserve: fraction of each bound on acceleration that the lower levels leave to the first level. Of each bound on
+  /// velocity, the lower levels leave reserve/2. compensates: whether other joints compensate for a joint that returns
+  /// from beyond its range. Throws std::invalid_argument unless 0 ≤ reserve ≤ 1.
   explicit Limiter(const Limits<kLevel, N, Scalar>& limits, Scalar reserve = Scalar(0), bool compensates = false)
       : limits_(limits),
         lower_limits_(reserved_limits(limits, reserve)),
@@ -186,8 +186,8 @@ class Limiter {
     return jerk ? second_pass<Tasks>(limits_, saturation, state, last, box, rows, first, found) : found;
   }
 
-  /// The value is a definition. The cost μ of null-space motion (inverse_task_metric()) causes a small change c, which
-  /// is not reported as a blocked task (LimiterRows.scale_the_task_by_its_relative_change).
+  /// Largest relative change c of a level that does not reduce the task scale: a definition. The cost μ of null-space
+  /// motion (inverse_task_metric()) causes a small c (LimiterRows.scale_the_task_by_its_relative_change).
   static constexpr Scalar kNegligibleChange = Scalar(0.01);
 
   Limits<kLevel, N, Scalar> limits_;

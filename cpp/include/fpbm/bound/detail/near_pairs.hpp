@@ -119,11 +119,11 @@ class NearPairs {
   std::vector<Scalar> lower_bound_;            ///< Lower bound on the distance of each pair [m].
   std::vector<Nearest<Scalar>> nearest_;       ///< Nearest points of each pair with is_known_.
   std::vector<unsigned char> is_known_;        ///< Whether nearest_ is computed for the present posture.
-  AllJoints levers_;                           ///< Largest lever of any body, for each joint.
+  AllJoints levers_;                           ///< Largest lever of any body, for each joint [m/rad or 1].
   AllJoints most_;                             ///< Largest displacement of each joint [rad or m].
   std::vector<Scalar> obstacle_displacement_;  ///< Displacement of each obstacle [m].
   std::vector<std::size_t> obstacle_moves_;    ///< Obstacle::moves at the last set_posture().
-  Scalar largest_ = Scalar(0);                 ///< Largest displacement_of() of any pair [m].
+  Scalar largest_ = Scalar(0);                 ///< Upper bound on displacement_of() of all pairs [m].
 };
 
 }  // namespace fpbm
