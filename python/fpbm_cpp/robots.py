@@ -17,7 +17,7 @@ from .arms import ARMS, Arm, SerialArm
 from .errors import not_one_of, require, wrong
 from .joints import CENTER, IDENTITY, Joint, JointLimits, NamedFrame, TreeJoint, joint_table
 from .parameter import NOT_NEGATIVE, Data, Parameter, data, from_file, parameter
-from .urdf.tree import read_tree
+from .urdf.chain import read_tree
 
 __all__ = ["Robot"]
 

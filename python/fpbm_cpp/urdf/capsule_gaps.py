@@ -6,7 +6,6 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise, product
 from math import isfinite
-from typing import NamedTuple
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from ..joints import Joint, TreeJoint
 from .capsule_fit import Fit, distances, enclosing, fit_capsule, outermost, sphere
 from .shapes import Shape, together
 
+CUTS = 6  # A shape is cut in two at the ends of this number of equal parts.
 PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89, 97, 101, 103, 107)
 # tests/python/test_home_postures.py passes with these values; they are not from a parameter study.
 CLOSE = 1.2  # Capsules closer than CLOSE margins are too close; a start at rest needs one margin.
@@ -29,7 +29,8 @@ NORMALS = 200  # Directions of the first search for a gap between hulls.
 SPREADS = 0.1 * 0.6 ** np.arange(8)  # Spread about the best direction in each round of the search.
 
 
-class Part(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Part:
     """A part of a link, in the frame of its joint, and the capsule that contains it."""
 
     shape: Shape
@@ -50,10 +51,15 @@ class Part(NamedTuple):
                 found.append(u)
         return found
 
-    def cut(self, u: Array, places: Iterable[float]) -> list[Shape]:
-        """The shape, cut by planes normal to u at these places; empty if a piece would have no points."""
+    def cut(self, u: Array, places: Iterable[float], search: bool = True) -> list[Part]:
+        """The part, cut by planes normal to u at these places; empty if a piece would have no points."""
         shapes = [self.shape.between(u, *ends) for ends in pairwise([-np.inf, *places, np.inf])]
-        return shapes if all(len(shape.points) for shape in shapes) else []
+        return [rough_part(shape, search) for shape in shapes] if all(len(shape.points) for shape in shapes) else []
+
+    def places(self, u: Array, count: int) -> list[float]:
+        """The ends along u of equal parts of the shape, without its own ends."""
+        s = self.shape.points @ u
+        return list(np.linspace(s.min(), s.max(), count + 1)[1:-1])
 
 
 def rough_part(shape: Shape, search: bool = True) -> Part:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator
+from functools import cache
 
 import numpy as np
 
@@ -10,10 +11,9 @@ from .._types import Array
 from ..errors import extra
 from ..joints import TreeJoint
 from .capsule_fit import enclosing
-from .capsule_gaps import Link, Part, capsules_apart, link_frames, postures, rough_part
+from .capsule_gaps import CUTS, Link, Part, capsules_apart, link_frames, postures
 
 MOST = 8  # Largest number of capsules of a link: TIAGo's torso needs 5 in its home posture.
-PLACES = 6  # A shape is cut in two at the ends of this number of equal parts.
 SLABS = (3, 4, 5)  # Numbers of equal slabs that are tried.
 STEPS = (0.1, 0.2, 0.5, 1.0)  # Displacements of a capsule that are tried, in radii; not tuned.
 LEAST = 0.1  # Fraction of a part's missing distance that a cut must gain; not tuned.
@@ -100,13 +100,7 @@ def clear(
     """
     state = Postures(links, joints, required, margin, but)
     given_up: set[tuple[int, int]] = set()
-    known: dict[int, tuple[Part, list[list[Part]]]] = {}  # A part and its slabs, by the part's id.
-
-    def slabs(part: Part) -> list[list[Part]]:
-        if id(part) not in known:
-            known[id(part)] = part, list(_slabs(part))
-        return known[id(part)][1]
-
+    slabs = cache(lambda part: list(_slabs(part)))
     while pair := state.worst(given_up):
         found = _best(state, pair, _moved) or _best(state, pair, slabs)
         if found is None:
@@ -143,11 +137,8 @@ def _best(
 def _slabs(part: Part) -> Iterator[list[Part]]:
     """A part, cut in two or into equal slabs."""
     for u in part.directions(*np.eye(3)):
-        s = part.shape.points @ u
-        halves = [[place] for place in np.linspace(s.min(), s.max(), PLACES + 1)[1:-1]]
-        for places in [*halves, *(list(np.linspace(s.min(), s.max(), count + 1)[1:-1]) for count in SLABS)]:
-            if shapes := part.cut(u, places):
-                yield [rough_part(shape) for shape in shapes]
+        halves = [[place] for place in part.places(u, CUTS)]
+        yield from filter(None, (part.cut(u, each) for each in [*halves, *(part.places(u, n) for n in SLABS)]))
 
 
 def _moved(part: Part) -> Iterator[list[Part]]:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import cache
 from itertools import combinations
 
 import numpy as np
@@ -16,14 +17,12 @@ from ..capsule import MARGIN, Capsule
 from ..errors import wrong
 from ..joints import JointLimits, TreeJoint
 from .capsule_fit import Fit, fit_capsule, fit_cylinder
-from .capsule_gaps import Gaps, Link, Part, link_frames, postures, rough_part
+from .capsule_gaps import CUTS, Gaps, Link, Part, link_frames, postures, rough_part
 from .capsule_slabs import clear
-from .chain import Places, read_places
+from .chain import Places, read_places, read_tree
 from .shapes import Shape, read_shapes, together
-from .tree import read_tree
 
 FAIR = 0.85  # A link gets several capsules if their volume is at most this fraction of the volume of one capsule.
-CUTS = 6  # A shape is cut at the ends of this number of equal parts.
 SEARCHED = 3  # Cuts for which the search runs: those that are best before the search.
 MANY = 12  # Largest number of shapes of a link for which groups of shapes are tried.
 POSTURES = 64  # Postures in which distances of links are compared.
@@ -144,21 +143,18 @@ def refine(links: list[Link], joints: list[TreeJoint], most: int, margin: float)
     """
     gaps = Gaps(links, link_frames(joints, postures([each.joint for each in joints], POSTURES)), margin)
     given_up: set[tuple[int, int]] = set()
-    known: dict[int, tuple[Part, list[list[Part]]]] = {}  # A part and its halves, by the part's id.
+    halves = cache(lambda part: list(_halves(part)))
     while pair := gaps.worst(given_up):
         tried: list[tuple[float, int, list[Part]]] = []
         for i in pair:
             parts = links[i].parts
             for k, part in enumerate(parts if len(parts) < most else []):
-                if id(part) not in known:
-                    known[id(part)] = part, list(_halves(part))
-                for halves in known[id(part)][1]:
-                    finer = [*parts[:k], *halves, *parts[k + 1 :]]
+                for both in halves(part):
+                    finer = [*parts[:k], *both, *parts[k + 1 :]]
                     tried.append((gaps.excess_with(i, finer, pair), i, finer))
         tried = sorted(tried, key=lambda each: each[0])[:SEARCHED]
         for k, (_, i, finer) in enumerate(tried):
-            kept = set(map(id, links[i].parts))
-            finer = [part if id(part) in kept else rough_part(part.shape) for part in finer]
+            finer = [part if part in links[i].parts else rough_part(part.shape) for part in finer]
             tried[k] = gaps.excess_with(i, finer, pair), i, finer
         excess, i, finer = min(tried, key=lambda each: each[0], default=(np.inf, 0, []))
         if excess > GAIN * gaps.excess(*pair):
@@ -170,10 +166,7 @@ def refine(links: list[Link], joints: list[TreeJoint], most: int, margin: float)
 def _halves(part: Part) -> Iterator[list[Part]]:
     """A part, cut in two."""
     for u in part.directions():
-        s = part.shape.points @ u
-        for place in np.linspace(s.min(), s.max(), CUTS + 1)[1:-1]:
-            if halves := part.cut(u, [float(place)]):
-                yield [rough_part(half, search=False) for half in halves]
+        yield from filter(None, (part.cut(u, [place], search=False) for place in part.places(u, CUTS)))
 
 
 def _parts_of(shapes: list[Shape], most: int) -> list[Part]:
@@ -188,7 +181,7 @@ def _parts_of(shapes: list[Shape], most: int) -> list[Part]:
     return found if _volume(found) < FAIR * whole.fit.volume else [whole]
 
 
-def _volume(parts: list[Part]) -> float:
+def _volume(parts: Sequence[Part]) -> float:
     return sum(part.fit.volume for part in parts)
 
 
@@ -197,16 +190,13 @@ def _searched(parts: list[Part]) -> list[Part]:
 
 
 def _part(shape: Shape) -> Part:
-    return Part(shape, _fit(shape.body))
-
-
-def _fit(shape: Shape) -> Fit:
-    if shape.cylinder is not None:
-        radius, length, frame = shape.cylinder
-        fit = fit_cylinder(radius, length)
-        R, p = frame[:3, :3], frame[:3, 3]
-        return Fit(R @ fit.a + p, R @ fit.b + p, fit.radius)
-    return fit_capsule(shape.points, shape.sizes)
+    body = shape.body
+    if body.cylinder is None:
+        return Part(shape, fit_capsule(body.points, body.sizes))
+    radius, length, frame = body.cylinder
+    fit = fit_cylinder(radius, length)
+    a, b = (frame[:3, :3] @ end + frame[:3, 3] for end in (fit.a, fit.b))
+    return Part(shape, Fit(a, b, fit.radius))
 
 
 def _cut(whole: Part, most: int) -> list[Part]:
@@ -216,38 +206,23 @@ def _cut(whole: Part, most: int) -> list[Part]:
 
 def _slabs(whole: Part, u: Array, most: int) -> list[Part]:
     """Cut by planes normal to u, each where the total volume of the capsules is least, while the volume decreases."""
-    s = whole.shape.points @ u
-    places = np.linspace(s.min(), s.max(), CUTS + 1)[1:-1]
     bounds: list[float] = []
     best = [rough_part(whole.shape, search=False)]
     for _ in range(most - 1):
-        tried = []
-        for place in places:
-            if place not in bounds:
-                ends = sorted([*bounds, float(place)])
-                if shapes := whole.cut(u, ends):
-                    tried.append((ends, [rough_part(shape, search=False) for shape in shapes]))
-        if not tried:
+        ends = [sorted([*bounds, place]) for place in whole.places(u, CUTS) if place not in bounds]
+        tried = [(each, parts) for each in ends if (parts := whole.cut(u, each, search=False))]
+        finer, parts = min(tried, key=lambda each: _volume(each[1]), default=([], best))
+        if not finer or (len(best) > 1 and _volume(parts) >= _volume(best)):
             break
-        ends, parts = min(tried, key=lambda each: _volume(each[1]))
-        if len(best) > 1 and _volume(parts) >= _volume(best):
-            break
-        bounds, best = ends, parts
+        bounds, best = finer, parts
     return best
 
 
 def _grouped(shapes: list[Shape], most: int) -> list[Part]:
     """Shapes joined in pairs, first the pair whose common capsule adds the least volume."""
     groups = [rough_part(shape, search=False) for shape in shapes]
-    joined: dict[tuple[int, int], Part] = {}
+    joined = cache(lambda pair: rough_part(together([part.shape for part in pair]), search=False))
     while len(groups) > most:
-        for one, other in combinations(groups, 2):
-            if (id(one), id(other)) not in joined:
-                joined[id(one), id(other)] = rough_part(together([one.shape, other.shape]), search=False)
-        one, other = min(
-            combinations(groups, 2),
-            key=lambda pair: joined[id(pair[0]), id(pair[1])].fit.volume - _volume(list(pair)),
-        )
-        groups = [group for group in groups if group is not one and group is not other]
-        groups.append(joined[id(one), id(other)])
+        pair = min(combinations(groups, 2), key=lambda pair: joined(pair).fit.volume - _volume(pair))
+        groups = [*(group for group in groups if group not in pair), joined(pair)]
     return groups

@@ -1,10 +1,9 @@
-"""Chains of joints from URDF files. The names, numbers and tree of the whole file must be valid."""
+"""Chains and trees of joints from URDF files. The names, numbers and tree of the whole file must be valid."""
 
 import difflib
 import os
 import warnings
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from contextlib import contextmanager
 from dataclasses import replace
 from graphlib import CycleError, TopologicalSorter
 from math import inf
@@ -15,13 +14,21 @@ from numpy.typing import ArrayLike
 
 from .._core import MAX_DOF, rotation
 from .._types import Array
-from ..errors import ParameterError, UrdfWarning, wrong
-from ..joints import NO_BOUNDS, Joint, JointLimits, limited
-from .file import ENVELOPE, UrdfJoint, read_robot
+from ..errors import ParameterError, UrdfWarning, not_one_of, wrong
+from ..joints import NO_BOUNDS, Joint, JointLimits, NamedFrame, TreeJoint, limited
+from .file import ENVELOPE, INERTIALS, Mass, UrdfJoint, read_robot
+from .xml_file import errors_of
 
 OWN_RANGE = "give limits=fp.JointLimits(lower=..., upper=...)"
 FREE = f"to move a joint, {OWN_RANGE}"
 TYPES = ("revolute", "continuous", "prismatic", "fixed")
+TREE_TYPES = (*TYPES, "floating", "planar")
+BASES = ("fixed", "planar")
+PLANAR_BASE = (
+    Joint("prismatic", axis=(1, 0, 0), name="base_x"),
+    Joint("prismatic", axis=(0, 1, 0), name="base_y"),
+    Joint("continuous", axis=(0, 0, 1), name="base_yaw"),
+)
 Tree = dict[str, "UrdfJoint | None"]  # The parent joint of each link, None for the root.
 # For each link: number of joints that move the link, and the pose of the link in the frame of the last joint.
 Places = dict[str, tuple[int, Array]]
@@ -52,45 +59,23 @@ def read_places(
 
     notes: list for the texts of warnings.
     """
-    name = os.fsdecode(path)
-    own = own_bounds(limits)
+    own = limits.given if limits is not None else {}
     notes = [] if notes is None else notes
-    try:
-        links, every = read_robot(name)
+    with errors_of(path):
+        links, every, _ = read_robot(os.fsdecode(path))
         above = tree_of(links, every)
         branch = _branch(above, tip, base)
-        with or_else("give another base or tip"):
+        with errors_of(None, ", or give another base or tip"):
             follows = follows_of(branch, {joint.name: joint.mimic for joint in every})
             joints, places = _chain(branch, follows, own, notes)
-        joints, frame = limited(coupled_joints(joints, follows, notes), limits), places[tip][1]
-        places = _all_places(above, places)
-    except ParameterError:
-        raise
-    except ValueError as error:
-        raise ValueError(f"{name}: {error}") from None
-    return joints, frame, places
-
-
-def own_bounds(limits: JointLimits | None) -> Collection[str]:
-    """Names of the bounds that the limits replace."""
-    return limits.given.keys() if limits is not None else ()
+        joints = limited(coupled_joints(joints, follows, notes), limits)
+        return joints, places[tip][1], _all_places(above, places)
 
 
 def warn(path: str | os.PathLike[str], notes: Iterable[str], level: int) -> None:
     """Issue a warning for each note about a file, for the caller `level` functions up."""
     for note in notes:
         warnings.warn(f"{os.fsdecode(path)}: {note}", UrdfWarning, stacklevel=level)
-
-
-@contextmanager
-def or_else(remedy: str) -> Iterator[None]:
-    """Add a remedy to the message of an error."""
-    try:
-        yield
-    except ParameterError:
-        raise
-    except ValueError as error:
-        raise ValueError(f"{error}, or {remedy}") from None
 
 
 def tree_of(links: Iterable[str], joints: Iterable[UrdfJoint]) -> Tree:
@@ -167,8 +152,12 @@ def _hint(above: Tree, link: str) -> str:
     parents = {joint.parent for joint in above.values() if joint}
     leaves = (name for name in above if name not in parents)
     ends = sorted(leaves, key=lambda name: -_moving(_to_root(above, "tip", name)))
-    close = difflib.get_close_matches(link, list(above)[:300])  # A search of thousands of names is slow.
-    return (f", perhaps {' or '.join(map(repr, close))}" if close else "") + f"; branches end in {listed(ends)}"
+    return f"{_perhaps(link, above)}; branches end in {listed(ends)}"
+
+
+def _perhaps(name: str, names: Iterable[str]) -> str:
+    close = difflib.get_close_matches(name, list(names)[:300])  # A search of thousands of names is slow.
+    return f", perhaps {' or '.join(map(repr, close))}" if close else ""
 
 
 def follows_of(branch: Iterable[UrdfJoint], mimics: Mapping[str, Follow | None]) -> dict[str, Follow]:
@@ -204,35 +193,56 @@ def _chain(
     branch: list[UrdfJoint], follows: Mapping[str, Follow], own: Collection[str], notes: list[str]
 ) -> tuple[list[Joint], Places]:
     """The moving joints, and the places of the links of the chain."""
-    held = without_range((joint for joint in branch if joint.name not in follows), own, notes)
-    moving = {joint.name for joint in branch if joint.type != "fixed" and joint.name not in held}
-    joints: list[Joint] = []
-    frame = frame_at()
-    places: Places = {branch[0].parent: (0, frame)}
     for joint in branch:
         if joint.type not in TYPES:
             problem = f"type = {joint.type!r}: must be {', '.join(TYPES[:-1])} or fixed"
             raise ValueError(f"joint {joint.name!r}: {problem}: correct the type")
-        frame = frame @ pose(joint.xyz, joint.rpy)
-        if joint.type != "fixed":
-            leader, ratio, offset = follows.get(joint.name, (joint.name, 1.0, 0.0))
-            if leader in moving:
-                joints.append(chain_joint(joint, frame, own, leader != joint.name))
-                frame = frame_at()
-            else:
-                position = ratio * held.get(leader, 0.0) + offset
-                frame = frame @ step_of(joint, position)
-                if leader not in held:
-                    reason = f"it mimics {leader!r}, which does not move between base and tip"
-                    notes.append(f"joint {joint.name!r} is held at {position:g} {unit_of(joint)}: {reason}")
-        places[joint.child] = (len(joints), frame)
+    fixed = without_range((joint for joint in branch if joint.name not in follows), own, notes)
+    moving = {joint.name for joint in branch if joint.type != "fixed"}
+    held = {**{leader: 0.0 for leader, _, _ in follows.values() if leader not in moving}, **fixed}
+    for joint in branch:
+        leader, _, offset = follows.get(joint.name, ("", 1.0, 0.0))
+        if leader in held and leader not in fixed:
+            reason = f"it mimics {leader!r}, which does not move between base and tip"
+            notes.append(f"joint {joint.name!r} is held at {offset:g} {unit_of(joint)}: {reason}")
+    joints: list[Joint] = []
+    places: Places = {branch[0].parent: (0, frame_at())}
+    _add(branch, follows, held, own, joints, places)
     if not joints:
         names = listed(joint.name for joint in branch if joint.type != "fixed")
-        if held:
+        if fixed:
             raise ValueError(f"all joints between base and tip are fixed, because lower = upper: {names}: {FREE}")
         problem = f"all joints between base and tip mimic joints elsewhere: {names}"
         raise ValueError(f"{problem}: at least one joint must have a drive")
     return joints, places
+
+
+def _add(
+    every: Iterable[UrdfJoint],
+    follows: Mapping[str, Follow],
+    held: Mapping[str, float],
+    own: Collection[str],
+    joints: list[Joint],
+    places: Places,
+) -> list[int]:
+    """Add the joints that move, and the places of the children of all joints; each joint follows its parent.
+
+    Returns the numbers of the parent links of the added joints.
+    """
+    parents = []
+    for joint in every:
+        number, frame = places[joint.parent]
+        frame = frame @ pose(joint.xyz, joint.rpy)
+        if joint.type in TYPES[:-1]:
+            leader, ratio, offset = follows.get(joint.name, (joint.name, 1.0, 0.0))
+            if leader in held:
+                frame = frame @ step_of(joint, ratio * held[leader] + offset)
+            else:
+                joints.append(chain_joint(joint, frame, own, leader != joint.name))
+                parents.append(number)
+                number, frame = len(joints), frame_at()
+        places[joint.child] = (number, frame)
+    return parents
 
 
 def without_range(joints: Iterable[UrdfJoint], own: Collection[str], notes: list[str]) -> dict[str, float]:
@@ -365,3 +375,156 @@ def coupled_joints(joints: list[Joint], follows: Mapping[str, Follow], notes: li
         problem = "ranges of mimic joints are ignored, because they leave no range for the joint that leads them"
         notes.append(f"{problem}: {first(said)}")
     return coupled
+
+
+def read_tree(
+    path: str | os.PathLike[str],
+    *,
+    base: str | None = None,
+    locked: Mapping[str, float] | None = None,
+    tips: Iterable[str] | None = None,
+    limits: JointLimits | None = None,
+    notes: list[str] | None = None,
+) -> dict[str, Any]:
+    """The arguments of a Robot; see Robot.from_urdf(). notes: list for the texts of warnings, instead of warnings."""
+    if base is not None and base not in BASES:
+        raise not_one_of("base", base, BASES)
+    said: list[str] = [] if notes is None else notes
+    with errors_of(path):
+        links, every, masses = read_robot(os.fsdecode(path), INERTIALS)
+        above = tree_of(links, every)
+        held = _held(above, every, dict(locked or {}), tips)
+        robot = _robot(above, every, masses, held, base, limits, said)
+    if notes is None:
+        warn(path, said, 4)
+    return robot
+
+
+def _held(
+    above: Tree, every: Iterable[UrdfJoint], locked: dict[str, float], tips: Iterable[str] | None
+) -> dict[str, float]:
+    """Positions of the fixed joints, by name."""
+    joints = {joint.name: joint for joint in every}
+    for name, position in locked.items():
+        if name not in joints or joints[name].type in ("fixed", "floating", "planar"):
+            raise wrong("locked", name, f" has {name!r}: must be names of joints that move{_perhaps(name, joints)}")
+        mimic = joints[name].mimic
+        if mimic is not None and _leads_to_drive(joints, name):
+            raise wrong("locked", name, f" has {name!r}, which mimics {mimic[0]!r}: lock the leader")
+        low, high = _range(joints[name])
+        if low < high and not low <= position <= high:
+            raise ParameterError(
+                "locked", None, position, f"locked[{name!r}] = {position:g}: must be from {low:g} to {high:g}"
+            )
+    held = {name: float(position) for name, position in locked.items()}
+    if tips is not None:
+        needed = _needed(above, joints, [tips] if isinstance(tips, str) else tips)
+        for name, joint in joints.items():
+            if name not in needed and joint.type != "fixed" and not (joint.mimic and _leads_to_drive(joints, name)):
+                low, high = _range(joint)
+                held.setdefault(name, min(max(0.0, low), high))
+    return held
+
+
+def _leads_to_drive(joints: Mapping[str, UrdfJoint], name: str) -> bool:
+    """Whether the leaders of a mimic joint exist, up to a joint that has a drive."""
+    for _ in range(MAX_DOF + 1):
+        mimic = joints[name].mimic
+        if mimic is None:
+            return True
+        name = mimic[0]
+        if name not in joints:
+            return False
+    return False
+
+
+def _needed(above: Tree, joints: Mapping[str, UrdfJoint], tips: Iterable[str]) -> set[str]:
+    """Names of the joints that move a tip, and of their leaders."""
+    needed: set[str] = set()
+    for tip in tips:
+        if tip not in above:
+            raise wrong("tips", tip, f" has {tip!r}: must be links{_perhaps(str(tip), above)}")
+        link = tip
+        while (joint := above[link]) is not None:
+            while joint.name not in needed:
+                needed.add(joint.name)
+                if joint.mimic is None or joint.mimic[0] not in joints:
+                    break
+                joint = joints[joint.mimic[0]]
+            link = above[link].parent  # type: ignore[union-attr]
+    return needed
+
+
+def _range(joint: UrdfJoint) -> tuple[float, float]:
+    return (-inf, inf) if joint.type == "continuous" else (joint.limit.get("lower", 0.0), joint.limit.get("upper", 0.0))
+
+
+def _depth_first(above: Tree) -> Iterator[UrdfJoint]:
+    """All joints, each after its parent; the joints of a chain follow one another."""
+    below: dict[str, list[UrdfJoint]] = {link: [] for link in above}
+    for joint in filter(None, above.values()):
+        below[joint.parent].append(joint)
+    left = [joint for link, joint_above in above.items() if joint_above is None for joint in below[link][::-1]]
+    while left:
+        joint = left.pop()
+        yield joint
+        left += below[joint.child][::-1]
+
+
+def _robot(
+    above: Tree,
+    every: list[UrdfJoint],
+    masses: Mapping[str, Mass],
+    held: dict[str, float],
+    base: str | None,
+    limits: JointLimits | None,
+    notes: list[str],
+) -> dict[str, Any]:
+    own = limits.given if limits is not None else {}
+    names = {joint.name for joint in every}
+    lost = [joint.name for joint in every if joint.name not in held and joint.mimic and joint.mimic[0] not in names]
+    if lost:
+        problem = "must mimic a joint of the file: fix the joints by locked= or tips=, or correct the names"
+        raise ValueError(f"joints mimic joints that do not exist: {listed(lost)}: {problem}")
+    for joint in every:
+        if joint.type not in TREE_TYPES:
+            raise ValueError(f"joint {joint.name!r}: type = {joint.type!r}: must be {', '.join(TREE_TYPES)}")
+        if joint.type in ("floating", "planar") and base is None:
+            raise ValueError(f"joint {joint.name!r} is {joint.type}: base= must be 'fixed' or 'planar', to replace it")
+    joints = list(PLANAR_BASE) if base == "planar" else []
+    parents = list(range(len(joints)))
+    root = next(link for link, joint in above.items() if joint is None)
+    places = {root: (len(joints), frame_at())}
+    with errors_of(None, ", or fix the joint by locked= or tips="):
+        follows = follows_of(every, {joint.name: None if joint.name in held else joint.mimic for joint in every})
+        free = [joint for joint in every if joint.name not in held and joint.name not in follows]
+        fixed = without_range(free, own, notes)
+        parents += _add(_depth_first(above), follows, {**held, **fixed}, own, joints, places)
+    if not joints:
+        remedy = f"{FREE}, or if" if fixed else "if"
+        raise ValueError(f"no joints move: must be 1 to {MAX_DOF}: {remedy} the base moves, give base='planar'")
+    if len(joints) > MAX_DOF:
+        raise ValueError(f"{len(joints)} joints move: must be 1 to {MAX_DOF}; fix the other joints by locked= or tips=")
+    moving = {joint.name for joint in joints}
+    followers = {name: follow for name, follow in follows.items() if name in moving}
+    coupled = limited(coupled_joints(joints, followers, notes), limits)
+    weights = _weights(places, masses, len(joints) + 1)
+    return {
+        "joints": [
+            TreeJoint(joint, parent, mass=mass, center=center)
+            for joint, parent, (mass, center) in zip(coupled, parents, weights[1:])
+        ],
+        "named_frames": [NamedFrame(link, number, frame) for link, (number, frame) in places.items()],
+        "base_mass": weights[0].mass,
+        "base_center": weights[0].center,
+    }
+
+
+def _weights(places: Places, masses: Mapping[str, Mass], count: int) -> list[Mass]:
+    """Mass and centre of mass of each link of the robot; a link may combine several links of the file."""
+    total, moment = np.zeros(count), np.zeros((count, 3))
+    for link, (mass, center) in masses.items():
+        number, frame = places[link]
+        total[number] += mass
+        moment[number] += mass * (frame[:3, :3] @ center + frame[:3, 3])
+    return [Mass(float(m), s / m if m > 0.0 else s) for m, s in zip(total, moment)]

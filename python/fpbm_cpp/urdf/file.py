@@ -56,30 +56,24 @@ class UrdfJoint:
     mimic: tuple[str, float, float] | None  # Leader, multiplier, offset.
 
 
-def read_robot(path: str) -> tuple[list[str], list[UrdfJoint]]:
-    """Read the names of the links, and the joints. Raises ValueError if the file is invalid."""
-    return _links_and_joints(read_xml(path, KEPT))
+def read_robot(path: str, kept: Kept = KEPT) -> tuple[list[str], list[UrdfJoint], dict[str, Mass]]:
+    """Read the names of the links, the joints, and if INERTIALS are kept, the masses of the links with a mass.
 
-
-def read_robot_with_masses(path: str) -> tuple[list[str], list[UrdfJoint], dict[str, Mass]]:
-    """The result of read_robot(), and the masses of the links with a mass."""
-    robot = read_xml(path, INERTIALS)
-    links, joints = _links_and_joints(robot)
+    Raises ValueError if the file is invalid.
+    """
+    robot = read_xml(path, kept)
+    for joint in robot.all("joint"):
+        joint.require_one_each(f"joint {joint.attributes.get('name')!r}")
+    links = named(robot.all("link"))
+    joints = [_joint(name, element) for name, element in named(robot.all("joint")).items()]
     masses: dict[str, Mass] = {}
-    for name, link in named(robot.all("link")).items():
+    for name, link in links.items():
         for inertial in link.all("inertial")[:1]:
             (mass,) = inertial.numbers("mass", "value", [0.0], f"link {name!r}")
             if mass < 0.0:
                 raise ValueError(f"link {name!r}: mass = {mass:g}: must not be negative")
             masses[name] = Mass(mass, np.array(inertial.numbers("origin", "xyz", [0.0] * 3, f"link {name!r}")))
-    return links, joints, masses
-
-
-def _links_and_joints(robot: Element) -> tuple[list[str], list[UrdfJoint]]:
-    for joint in robot.all("joint"):
-        joint.require_one_each(f"joint {joint.attributes.get('name')!r}")
-    links, joints = named(robot.all("link")), named(robot.all("joint"))
-    return list(links), [_joint(name, element) for name, element in joints.items()]
+    return list(links), joints, masses
 
 
 def _joint(name: str, joint: Element) -> UrdfJoint:

@@ -16,7 +16,7 @@ from .._types import Array
 from ..errors import extra
 from .chain import pose
 from .mesh_file import edges_of, find_mesh, read_mesh
-from .xml_file import Element, Kept, named, read_xml
+from .xml_file import Element, Kept, errors_of, named, read_xml
 
 SIDES = 64  # Sides of the prism around a cylinder; the prism is 0.12 % wider than the cylinder.
 MANY = 2000  # Largest number of corners of a mesh of which no approximation is made.
@@ -162,15 +162,12 @@ def read_shapes(path: str | os.PathLike[str]) -> dict[str, list[Shape]]:
     """
     name = os.fsdecode(path)
     meshes: dict[str, tuple[Array, NDArray[np.intp]]] = {}
-    try:
-        links = named(read_xml(name, KEPT).all("link"))
+    with errors_of(name):
         return {
             link: [_shape(each, f"link {link!r}", Path(name), meshes) for each in element.parts]
-            for link, element in links.items()
+            for link, element in named(read_xml(name, KEPT).all("link")).items()
             if element.parts
         }
-    except ValueError as error:
-        raise ValueError(f"{name}: {error}") from None
 
 
 def _shape(collision: Element, owner: str, urdf: Path, meshes: dict[str, tuple[Array, NDArray[np.intp]]]) -> Shape:
@@ -186,12 +183,11 @@ def _shape(collision: Element, owner: str, urdf: Path, meshes: dict[str, tuple[A
 
 
 def _primitive(element: Element, owner: str) -> Shape:
-    inside = Element("geometry", element.line, {}, [element])
     sizes: list[float] = []
     for key in SHAPES[element.tag]:
         if key not in element.attributes:
             raise ValueError(f'{owner} has no <{element.tag} {key}="...">')
-        sizes += inside.numbers(element.tag, key, [0.0] * (3 if key == "size" else 1), owner)
+        sizes += element.own_numbers(key, [0.0] * (3 if key == "size" else 1), owner)
     if min(sizes) < 0.0:
         raise ValueError(f"{owner}: {element.tag} of {' '.join(f'{size:g}' for size in sizes)}: must not be negative")
     if element.tag == "box":
@@ -221,6 +217,6 @@ def _mesh(element: Element, owner: str, urdf: Path, meshes: dict[str, tuple[Arra
             where = "must be below a folder above the URDF file or in ROS_PACKAGE_PATH: set ROS_PACKAGE_PATH"
             raise ValueError(f"{owner}: mesh {name!r} is not found: {where}")
         meshes[name] = read_mesh(file)
-    scale = Element("geometry", element.line, {}, [element]).numbers("mesh", "scale", [1.0] * 3, owner)
+    scale = element.own_numbers("scale", [1.0] * 3, owner)
     corners, edges = meshes[name]
     return Shape(corners * scale, edges)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 
-from .xml_file import Element, Kept, read_xml
+from .xml_file import Kept, errors_of, read_xml
 
 STATES: Kept = {("robot",): {"group_state": ("name",)}, ("robot", "group_state"): {"joint": ("name", "value")}}
 KEPT: Kept = {("robot",): {"disable_collisions": ("link1", "link2")}}
@@ -16,10 +16,9 @@ def read_disabled_pairs(path: str | os.PathLike[str]) -> list[tuple[str, str]]:
     The pairs and the names in a pair are sorted, without duplicates. <disable_default_collisions> is ignored, so more
     pairs are checked than in MoveIt. Raises ValueError if the file is not a valid SRDF, OSError if it cannot be read.
     """
-    name = os.fsdecode(path)
     pairs = set()
-    try:
-        for element in read_xml(name, KEPT).parts:
+    with errors_of(path):
+        for element in read_xml(os.fsdecode(path), KEPT).parts:
             links = [element.attributes.get(key) for key in ("link1", "link2")]
             one, other = (link or "" for link in links)
             if not one or not other or one == other:
@@ -27,8 +26,6 @@ def read_disabled_pairs(path: str | os.PathLike[str]) -> list[tuple[str, str]]:
                     f"line {element.line}: <disable_collisions> of {one!r} and {other!r}: must be two different links"
                 )
             pairs.add((min(one, other), max(one, other)))
-    except ValueError as error:
-        raise ValueError(f"{name}: {error}") from None
     return sorted(pairs)
 
 
@@ -37,19 +34,15 @@ def read_group_states(path: str | os.PathLike[str]) -> list[dict[str, float]]:
 
     Raises ValueError if the file is not a valid SRDF, OSError if it cannot be read.
     """
-    name = os.fsdecode(path)
     states = []
-    try:
-        for element in read_xml(name, STATES).parts:
+    with errors_of(path):
+        for element in read_xml(os.fsdecode(path), STATES).parts:
             state: dict[str, float] = {}
             for joint in element.parts:
                 own = f"line {joint.line}: group state {element.attributes.get('name', '')!r}"
                 if len(joint.attributes.get("value", "").split()) > 1:
                     break
-                inside = Element("group_state", joint.line, {}, [joint])
-                (state[joint.attributes.get("name", "")],) = inside.numbers("joint", "value", [0.0], own)
+                (state[joint.attributes.get("name", "")],) = joint.own_numbers("value", [0.0], own)
             else:
                 states.append(state)
-    except ValueError as error:
-        raise ValueError(f"{name}: {error}") from None
     return states

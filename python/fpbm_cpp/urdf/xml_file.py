@@ -6,11 +6,12 @@ Files are not trusted: one bounded pass expands no entity, opens no other file, 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
-from ..errors import wrong
+from ..errors import ParameterError, wrong
 
 MAX_BYTES = 16 * 2**20
 MAX_ELEMENTS = 50_000
@@ -46,8 +47,13 @@ class Element:
             seen.add(part.tag)
 
     def numbers(self, tag: str, key: str, default: list[float], owner: str) -> list[float]:
+        """Numbers in an attribute of the first part with this tag."""
+        part = next((part for part in self.parts if part.tag == tag), Element(tag, self.line, {}))
+        return part.own_numbers(key, default, owner)
+
+    def own_numbers(self, key: str, default: list[float], owner: str) -> list[float]:
         """As many finite numbers as in the default, which applies if the attribute is missing."""
-        text = self.get(tag, key)
+        text = self.attributes.get(key)
         if text is None:
             return default
         try:
@@ -58,7 +64,7 @@ class Element:
         # No robot has numbers beyond 1e100, and products of smaller numbers do not overflow.
         if len(found) != len(default) or not all(abs(number) < 1e100 for number in found):
             required = f"{len(default)} finite number{'s' * (len(default) > 1)}"
-            raise ValueError(f"{owner}: {tag} {key} = {text!r}: must be {required}")
+            raise ValueError(f"{owner}: {self.tag} {key} = {text!r}: must be {required}")
         return found
 
 
@@ -113,6 +119,17 @@ def read_xml(path: str | os.PathLike[str], kept: Kept) -> Element:
     except LookupError as error:
         raise ValueError(f"line 1: invalid XML: {error}") from None
     return root
+
+
+@contextmanager
+def errors_of(path: str | os.PathLike[str] | None, remedy: str = "") -> Iterator[None]:
+    """Add the name of a file before the message of a ValueError, and a remedy after the message."""
+    try:
+        yield
+    except ParameterError:
+        raise
+    except ValueError as error:
+        raise ValueError(f"{f'{os.fsdecode(path)}: ' if path else ''}{error}{remedy}") from None
 
 
 def cut(text: str) -> str:
