@@ -174,19 +174,11 @@ class Clearance(Data):
         pairs = [] if srdf is None else read_disabled_pairs(srdf)
         if tips is not None:
             tips = [tips] if isinstance(tips, str) else list(tips)
-        joints = [each.joint for each in read_joints(path, tip, base, locked, tips, limits)[0]]
-        capsules = capsules_of(
-            path,
-            tip,
-            base,
-            locked=locked,
-            tips=tips,
-            limits=limits,
-            per_link=per_link,
-            margin=margin,
-            required=_postures(joints, postures, srdf if per_link != 1 else None),
-            allowed=[*pairs, *allowed],
-        )
+        robot: dict[str, Any] = {"locked": locked, "tips": tips, "limits": limits}
+        joints = [each.joint for each in read_joints(path, tip, base, **robot)[0]]
+        robot["required"] = _postures(joints, postures, srdf if per_link != 1 else None)
+        robot["allowed"] = [*pairs, *allowed]
+        capsules = capsules_of(path, tip, base, per_link=per_link, margin=margin, **robot)
         names = {each.name for each in capsules}
         disabled = [pair for pair in pairs if names.issuperset(pair)]
         return cls(capsules, obstacles, margin=margin, allowed=[*disabled, *allowed])

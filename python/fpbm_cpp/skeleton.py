@@ -8,7 +8,7 @@ from ._types import Array
 from .arms import Arm, PlanarArm, SerialArm
 from .joints import Joint
 from .robots import Robot
-from .tasks import FrameTask
+from .tasks import FrameTask, PoseTask
 
 HINGE = Joint()  # A joint of a planar arm, which rotates about z.
 
@@ -72,6 +72,26 @@ def task_frames(arm: Arm | Robot, q: Array, task: FrameTask) -> Array:
 def frames_of(arm: Arm | Robot, q: Array, name: str) -> Array:
     """Frame of that name, as in tasks, shape (..., 4, 4). Raises ParameterError if the frame does not exist."""
     return named_frames(arm, q.reshape(-1, arm.dof), name).reshape(*q.shape[:-1], 4, 4)
+
+
+def task_jacobians(robot: Robot, q: Array, task: FrameTask) -> Array:
+    """Jacobian of a task relative to its reference frame, along the axes of the base frame, shape (N, m, n).
+
+    m is 6 for a PoseTask, otherwise 3, for the position.
+    """
+    p = task_frames(robot, q, task)[:, :3, 3]
+    J = _jacobians_at(robot, q, task.frame, p)
+    if task.reference_frame is not None:
+        J -= _jacobians_at(robot, q, task.reference_frame, p)
+    return J if isinstance(task, PoseTask) else J[:, :3]
+
+
+def _jacobians_at(robot: Robot, q: Array, frame: str, p: Array) -> Array:
+    """Jacobian of the points p, shape (N, 3) [m], that move with a frame."""
+    J = np.array([robot.jacobian(posture, frame) for posture in q]).reshape(-1, 6, robot.dof)
+    lever = p - frames_of(robot, q, frame)[:, :3, 3]
+    J[:, :3] += np.cross(J[:, 3:], lever[:, :, None], axis=1)
+    return J
 
 
 def _parents(arm: Arm | Robot) -> list[int]:

@@ -78,14 +78,8 @@ def _references(case: str, tip: Any, numbers: Array) -> Iterator[tuple[Any, ...]
             pose = np.array(start)
             pose[:3, 3] += moved
             pose[:3, :3] = rotation(turned + k * DT * rates[3:]) @ pose[:3, :3]
-            yield (
-                ({"tip": (pose, rates), "elbow": tip["elbow"] - displacement / 2},)
-                if case.endswith("_levels")
-                else (
-                    pose,
-                    rates,
-                )
-            )
+            levels = {"tip": (pose, rates), "elbow": tip["elbow"] - displacement / 2} if isinstance(tip, dict) else None
+            yield (pose, rates) if levels is None else (levels,)
 
 
 def tick_times(case: str, numbers: Array, runs: int) -> Array:
@@ -119,10 +113,8 @@ def measure(runs: int) -> Iterator[Times]:
             joints = numbers.size - PHASES * NUMBERS
             free = tick_times(case, free_motion(joints), runs)[LONGEST - 1]
             times = tick_times(case, numbers, runs)
-            saturations = (3 if case.endswith("_levels") else 1) * (2 if case.endswith(("_jerk", "_levels")) else 1)
-            yield Times(
-                case, free, np.median(times), np.quantile(times, 0.999), times.max(), PASSES * joints * saturations
-            )
+            most = PASSES * joints * (6 if case.endswith("_levels") else 2 if case.endswith("_jerk") else 1)
+            yield Times(case, free, np.median(times), np.quantile(times, 0.999), times.max(), most)
     finally:
         if enabled:
             gc.enable()

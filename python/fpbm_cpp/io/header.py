@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from ..capsule import Capsule
 from ..errors import not_one_of, wrong
-from ..joints import Joint, NamedFrame, TreeJoint
+from ..joints import Joint
 from ..robots import Robot
 
 SCALARS = ("double", "float")
@@ -45,30 +45,16 @@ def export_header(
     origin of the arm, for a comment. scalar: 'double', or 'float' for a processor without double. Raises ParameterError
     if the name is not a valid namespace.
     """
-    drives = _drives(joints, name, scalar)
-    kind = "SerialArm" if drives == len(joints) else "CoupledArm"
+    kind = "CoupledArm" if any(joint.mimic for joint in joints) else "SerialArm"
     parts = [_joint_lines(f"  chain.joints[{i}]", joint, scalar) for i, joint in enumerate(joints)]
     parts.append(_transform_lines("  chain.tip", tip, scalar))
-    length = f"<{scalar}, {len(joints)}>"
-    arm = f"fpbm::{kind}<kDof, {scalar}>"
     includes = ["array", f"fpbm/model/{'serial_arm' if kind == 'SerialArm' else 'coupled_arm'}.hpp"]
     if capsules is not None:
         includes += ["fpbm/bound/clearance.hpp", "vector"]
-    return f"""\
-{_begin(joints, name, source, includes)}
-/// The joints from base to tip, each placed in the frame of the previous joint [m].
-{BOUNDS}
-inline fpbm::Chain{length} chain() {{
-{_body(f"fpbm::Chain{length} chain", parts, scalar)}
-  return chain;
-}}
-
-inline {arm} arm() {{
-  return {arm}(chain());
-}}
-{"" if capsules is None else _capsule_lines(capsules, scalar)}
-}}  // namespace {name}
-"""
+    made = f"Chain<{scalar}, {len(joints)}> chain", f"{kind}<kDof, {scalar}> arm"
+    comment = "/// The joints from base to tip, each placed in the frame of the previous joint [m]."
+    rest = "" if capsules is None else _capsule_lines(capsules, scalar)
+    return _header(joints, name, source, scalar, includes, comment, made, parts, rest)
 
 
 def export_tree(robot: Robot, *, name: str, source: str = "", scalar: str = "double") -> str:
@@ -78,29 +64,22 @@ def export_tree(robot: Robot, *, name: str, source: str = "", scalar: str = "dou
     name, source, scalar and errors are as in export_header().
     """
     joints = [each.joint for each in robot.joints]
-    drives = _drives(joints, name, scalar)
-    tree = f"fpbm::Tree<{scalar}, {len(joints)}, {len(robot.named_frames)}>"
-    followers = "" if drives == len(joints) else f", {len(joints)}"
-    kind = f"fpbm::Robot<kDof, {scalar}{followers}>"
+    followers = f", {len(joints)}" if any(joint.mimic for joint in joints) else ""
     parts = [_mass_lines("  tree.base", robot.base_mass, robot.base_center, scalar)]
-    parts += [_tree_joint_lines(f"  tree.joints[{i}]", each, scalar) for i, each in enumerate(robot.joints)]
-    parts += [_frame_lines(f"  tree.frames[{i}]", each, scalar) for i, each in enumerate(robot.named_frames)]
-    return f"""\
-{_begin(joints, name, source, ["array", "fpbm/model/robot.hpp"])}
+    for i, each in enumerate(robot.joints):
+        parts.append(_joint_lines(f"  tree.joints[{i}].joint", each.joint, scalar))
+        parts[-1].append(f"  tree.joints[{i}].parent = {each.parent};")
+        parts[-1] += _mass_lines(f"  tree.joints[{i}].moved", each.mass, each.center, scalar)
+    for i, frame in enumerate(robot.named_frames):
+        member = f"  tree.frames[{i}]"
+        parts.append([f"{member}.name = {_literal(frame.name)};", f"{member}.link = {frame.link};"])
+        parts[-1] += _transform_lines(f"{member}.offset", frame.offset, scalar)
+    tree = f"Tree<{scalar}, {len(joints)}, {len(robot.named_frames)}> tree"
+    made = tree, f"Robot<kDof, {scalar}{followers}> robot"
+    comment = """\
 /// The joints from the base on, each placed in the frame of its parent link [m]; masses of the links [kg] and their
-/// centres [m]; frames. Link 0 is the base, link i + 1 is the child of joint i.
-{BOUNDS}
-inline {tree} tree() {{
-{_body(f"{tree} tree", parts, scalar)}
-  return tree;
-}}
-
-inline {kind} robot() {{
-  return {kind}(tree());
-}}
-
-}}  // namespace {name}
-"""
+/// centres [m]; frames. Link 0 is the base, link i + 1 is the child of joint i."""
+    return _header(joints, name, source, scalar, ["array", "fpbm/model/robot.hpp"], comment, made, parts)
 
 
 def namespace_of(stem: str) -> str:
@@ -114,22 +93,33 @@ def _is_identifier(name: str) -> bool:
     return re.fullmatch(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*_?", name) is not None and name not in TAKEN.split()
 
 
-def _drives(joints: Sequence[Joint], name: str, scalar: str) -> int:
-    """Number of joints that have a drive. Raises ParameterError if scalar or name is invalid."""
+def _header(
+    joints: Sequence[Joint],
+    name: str,
+    source: str,
+    scalar: str,
+    includes: Sequence[str],
+    comment: str,
+    made: tuple[str, str],
+    parts: Sequence[Sequence[str]],
+    rest: str = "",
+) -> str:
+    """The whole header. made: type and function of the data, whose lines are parts, and of the arm or the robot.
+
+    Raises ParameterError if scalar or name is invalid.
+    """
     if scalar not in SCALARS:
         raise not_one_of("scalar", scalar, SCALARS)
     if not all(_is_identifier(part) for part in name.split("::")):
         raise wrong("name", name, f" = {name!r}: must be a C++ identifier, not a keyword, Eigen, fpbm or std")
-    return sum(joint.mimic is None for joint in joints)
-
-
-def _begin(joints: Sequence[Joint], name: str, source: str, includes: Sequence[str]) -> str:
-    """The first part of the header, up to the names of the joints."""
     drives = [_literal(joint.name or f"joint_{i}") for i, joint in enumerate(joints, 1) if joint.mimic is None]
     width = max(map(len, drives), default=0)
     names = "\n".join(f"    {literal + ',':{width + 1}}  // q({i})" for i, literal in enumerate(drives))
     origin = f" from {''.join(c if c.isprintable() else '?' for c in source)}" if source else ""
     said = f"// Written by fpbm-cpp export-header{origin}. Do not edit."
+    text = "\n\n".join("\n".join(lines) for lines in parts if lines)
+    none = f"  constexpr {scalar} kNone = fpbm::JointBounds<{scalar}>::kNone;\n" if "kNone" in text else ""
+    (data, arm), variable = made, made[0].split()[-1]
     return f"""\
 {textwrap.fill(said, 120, subsequent_indent="// ", break_long_words=False, break_on_hyphens=False)}
 #pragma once
@@ -143,34 +133,27 @@ inline constexpr int kDof = {len(drives)};
 inline constexpr std::array<const char*, kDof> kJointNames = {{
 {names}
 }};
+
+{comment}
+{BOUNDS}
+inline fpbm::{data}() {{
+{none}  fpbm::{data};
+
+{text}
+
+  return {variable};
+}}
+
+inline fpbm::{arm}() {{
+  return fpbm::{arm.rpartition(" ")[0]}({variable}());
+}}
+{rest}
+}}  // namespace {name}
 """
-
-
-def _body(declaration: str, parts: Sequence[Sequence[str]], scalar: str) -> str:
-    """Declaration of the result of a function, and the lines that assign it."""
-    text = "\n\n".join("\n".join(lines) for lines in parts if lines)
-    none = f"  constexpr {scalar} kNone = fpbm::JointBounds<{scalar}>::kNone;\n" if "kNone" in text else ""
-    return f"{none}  {declaration};\n\n{text}\n"
-
-
-def _tree_joint_lines(member: str, each: TreeJoint, scalar: str) -> list[str]:
-    return [
-        *_joint_lines(f"{member}.joint", each.joint, scalar),
-        f"{member}.parent = {each.parent};",
-        *_mass_lines(f"{member}.moved", each.mass, each.center, scalar),
-    ]
 
 
 def _mass_lines(member: str, mass: float, center: ArrayLike, scalar: str) -> list[str]:
     return [f"{member} = {{{_number(mass, scalar)}, {_braced(center, scalar)}}};"] if mass else []
-
-
-def _frame_lines(member: str, frame: NamedFrame, scalar: str) -> list[str]:
-    return [
-        f"{member}.name = {_literal(frame.name)};",
-        f"{member}.link = {frame.link};",
-        *_transform_lines(f"{member}.offset", frame.offset, scalar),
-    ]
 
 
 def _joint_lines(member: str, joint: Joint, scalar: str) -> list[str]:

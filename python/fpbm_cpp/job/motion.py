@@ -178,8 +178,7 @@ def filled(job: Table, arm: Arm | Robot) -> Table:
     """The job with the defaults for missing keys."""
     job = with_tasks(job, arm)
     path = job.get("path", {"kind": FREE["path"]})
-    pieces = {task: _filled_paths(each, arm) for task, each in _by_task(path).items()}
-    pieces = pieces if is_by_task(path) else pieces[""]
+    pieces = _filled_paths(path, arm)
     gains = {"k1": 0.0, "k2": 0.0} if "task" in job else {}  # Each task has its own gains.
     scheme = dict(job.get("scheme", {"kind": FREE["scheme"]}))
     gains = {key: gain for key, gain in gains.items() if key in known("scheme", scheme.get("kind"))}
@@ -270,13 +269,17 @@ def _by_task(path: Any) -> dict[str, Any]:
     return path if is_by_task(path) else {"": path}
 
 
-def _filled_paths(said: Any, arm: Arm | Robot) -> Any:
-    return [_filled_path(piece, arm) for piece in said] if isinstance(said, list) else _filled_path(said, arm)
+def _filled_paths(said: Any, arm: Arm | Robot, radius: float | None = None) -> Any:
+    """The paths with their defaults, and this radius for each circle of which the job does not say the radius.
 
-
-def _filled_path(said: Table, arm: Arm | Robot) -> Table:
-    """A path with its defaults; for an arm in space, a planar path is placed in the yz plane."""
-    whole = _filled("path", said)
+    For an arm in space, a planar path is placed in the yz plane.
+    """
+    if isinstance(said, list):
+        return [_filled_paths(piece, arm, radius) for piece in said]
+    if is_by_task(said):
+        return {task: _filled_paths(each, arm, radius) for task, each in said.items()}
+    given = {"radius": radius, **said} if radius is not None and said["kind"] == Circle.kind else said
+    whole = _filled("path", given)
     if isinstance(arm, PlanarArm) or "in_plane" in whole:
         return whole
     shape = make("path", {key: whole[key] for key in whole if key not in PATH_OPTIONS})
@@ -290,24 +293,15 @@ def _scaled(said: Any, full: Any, arm: Arm | Robot, limits: JointLimits, run: Ta
     None for a stack, whose paths are not tried.
     """
     radius = float(f"{CIRCLE * _reach(arm):.1g}")
-    first = _with_radius(said, full, radius)
-    if radius == 0.0 or first == _with_radius(said, full, 2 * radius):
+    first = _filled_paths(said, arm, radius)
+    if radius == 0.0 or first == _filled_paths(said, arm, 2 * radius):
         return full
     if run is not None:
         for halvings in range(HALVINGS + 1):
-            paths = _with_radius(said, full, radius / 2**halvings)
+            paths = _filled_paths(said, arm, radius / 2**halvings)
             if _can_follow(arm, make("path", paths, arm), limits, run):
                 return paths
     return first
-
-
-def _with_radius(said: Any, full: Any, radius: float) -> Any:
-    """The filled paths, with this radius for each circle of which the job does not say the radius."""
-    if isinstance(full, list):
-        return [_with_radius(*each, radius) for each in zip(said, full)]
-    if is_by_task(full):
-        return {task: _with_radius(said[task], full[task], radius) for task in full}
-    return {**full, "radius": radius} if full["kind"] == Circle.kind and "radius" not in said else full
 
 
 def _reach(arm: Arm | Robot) -> float:

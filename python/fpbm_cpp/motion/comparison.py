@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from textwrap import fill
 
@@ -36,7 +36,9 @@ def columns(*rows: Sequence[str]) -> str:
 
 def figure_table(names: Sequence[str], task: str, rows: Iterable[Row], remarks: Iterable[str]) -> str:
     """Table with a row for each scheme: named cells, complete motions, figures of the worst motion; remarks below."""
-    return _text(*_cells(names, task, rows), remarks)
+    header, cells = _cells(names, task, rows)
+    lines = [fill(remark, WIDTH, subsequent_indent="  ") for remark in remarks]
+    return "\n".join([columns(*header, *cells), *([""] if lines else []), *lines])
 
 
 def _cells(names: Sequence[str], task: str, rows: Iterable[Row]) -> tuple[list[list[str]], list[list[str]]]:
@@ -45,11 +47,6 @@ def _cells(names: Sequence[str], task: str, rows: Iterable[Row]) -> tuple[list[l
     header = zip(*((name, "") for name in (*names, "complete")), *(FIGURES[name][:2] for name in shown))
     cells = [[*first, done, *(number(figures[name]) for name in shown if figures)] for first, done, figures in rows]
     return [list(each) for each in header], cells
-
-
-def _text(header: list[list[str]], cells: list[list[str]], remarks: Iterable[str]) -> str:
-    lines = [fill(remark, WIDTH, subsequent_indent="  ") for remark in remarks]
-    return "\n".join([columns(*header, *cells), *([""] if lines else []), *lines])
 
 
 def named_runs(runs: Sequence[Run] | Mapping[str, Run]) -> dict[str, Run]:
@@ -84,12 +81,11 @@ class Comparison:
     remarks: tuple[str, ...]
     task: str
 
-    def _rows(self) -> Iterator[Row]:
-        for name, figures in self.figures.items():
-            yield [name], self.complete[name], figures
+    def _rows(self) -> list[Row]:
+        return [([name], self.complete[name], figures) for name, figures in self.figures.items()]
 
     def __str__(self) -> str:
-        return _text(*_cells(["scheme"], self.task, self._rows()), self.remarks)
+        return figure_table(["scheme"], self.task, self._rows(), self.remarks)
 
     __repr__ = __str__
 

@@ -16,9 +16,8 @@ from ..joints import JointLimits
 from ..paths import Path
 from ..robots import Robot
 from ..schemes import Scheme
-from ..skeleton import task_frames
+from ..skeleton import task_frames, task_jacobians
 from ..tasks import FrameTask, PoseTask, PositionTask, Stack
-from .task_frames import task_jacobians
 
 Paths: TypeAlias = Path | Mapping[str, Path]  # Path of one task, or paths of several tasks by name.
 ARRAYS = ("t", "q", "qd", "qdd", "x", "x_ref", "error")

@@ -96,23 +96,21 @@ def start_posture(
     require_motion(arm, path, scheme)
     require("arm", arm, Arm, "an arm")
     kept = bounds_of(bounds)
-    found = arm.inverse_all(
-        x0, start, count, task=task, stack=stack, limits=limits, bounds=kept, starts=starts, seed=seed
-    )
-    if not found:
-        near = arm.inverse(x0, start, task=task, stack=stack, limits=limits, bounds=kept, starts=starts, seed=seed)
-        raise wrong(
-            "x0",
-            x0,
-            f": no posture found; the nearest is {near.error:.3g} m or rad away: must be a point that the arm reaches",
-        )
-    q0s = np.array([posture.q for posture in found])
-    options: dict[str, Any] = {
-        "dt": dt,
-        "task": None if stack else task,
+    how: dict[str, Any] = {
+        "task": task,
         "stack": stack,
-        "limits": limits or arm.limits,
+        "limits": limits,
+        "bounds": kept,
+        "starts": starts,
+        "seed": seed,
     }
+    found = arm.inverse_all(x0, start, count, **how)
+    if not found:
+        away = f": no posture found; the nearest is {arm.inverse(x0, start, **how).error:.3g} m or rad away"
+        raise wrong("x0", x0, f"{away}: must be a point that the arm reaches")
+    q0s = np.array([posture.q for posture in found])
+    options: dict[str, Any] = {"dt": dt, "task": None if stack else task, "stack": stack}
+    options["limits"] = limits or arm.limits
     figures = sweep(arm, path, scheme, q0s, **options)
     errors = np.maximum(figures.max_error, figures.max_orientation_error)[0]
     failed: list[Run] = []

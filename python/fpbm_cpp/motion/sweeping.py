@@ -114,9 +114,8 @@ class Sweep:
     def _repr_html_(self) -> str:
         headings = ["scheme", "complete", "tip error [m]", "peak qd [rad/s]", "manipulability"]
         rows: list[list[str]] = []
-        for scheme, ok, *figures in zip(
-            self.schemes, self.ok, self.max_error, self.peak_velocity, -self.manipulability
-        ):
+        of_schemes = zip(self.schemes, self.ok, self.max_error, self.peak_velocity, -self.manipulability)
+        for scheme, ok, *figures in of_schemes:
             worst = [number(abs(float(np.max(each[ok])))) if ok.any() else "" for each in figures]
             rows.append([repr(scheme), f"{ok.sum()} of {ok.size}", *worst])
         return html_table(repr(self).strip("<>"), headings, rows)
@@ -226,20 +225,8 @@ def sweep(
     def chunk(part: slice) -> tuple[Any, ...]:
         """Input of a worker: motion i has laws[i // K] and starts[i % K], for K starts."""
         law, start = np.divmod(np.arange(part.start, part.stop), len(starts))
-        few = list(laws[law[0] : law[-1] + 1])
-        return (
-            arm,
-            path,
-            few,
-            (law - law[0]).tolist(),
-            starts[start],
-            float(dt),
-            float(hold),
-            kind,
-            motions,
-            kept,
-            tasks,
-        )
+        which = list(laws[law[0] : law[-1] + 1]), (law - law[0]).tolist(), starts[start]
+        return arm, path, *which, float(dt), float(hold), kind, motions, kept, tasks
 
     def take(part: slice, figures: Any, arrays: list[Any]) -> None:
         outcomes[part] = figures

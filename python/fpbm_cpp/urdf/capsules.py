@@ -8,6 +8,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from contextlib import contextmanager
 from functools import cache
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -36,42 +37,26 @@ def capsules_of(
     tip: str | None = None,
     base: str | None = None,
     *,
-    locked: Mapping[str, float] | None = None,
-    tips: Iterable[str] | None = None,
-    limits: JointLimits | None = None,
     per_link: int = 2,
     finer: bool = True,
     margin: float = MARGIN,
     required: ArrayLike | None = None,
     allowed: Collection[tuple[str, str]] = (),
+    **robot: Any,
 ) -> list[Capsule]:
-    """Tight capsules that contain the collision geometry of the links of a URDF file. Deterministic.
+    """Tight capsules that contain the collision geometry of the links of a URDF file, from base to tip. Deterministic.
 
-    Each link has one capsule of least volume, or up to per_link capsules if their volume is at least 15 % smaller.
-    Unless per_link is 1 or finer is False, a link may have one more capsule if its capsules would be closer to the
-    capsules of another link than a margin [m] although the links are not: see Gaps. In the required postures (k, n)
-    [rad] or [m], the capsules keep the margin if clear() finds capsules that keep the margin, at most 8 per link.
-    Allowed pairs of names are excepted.
+    Arguments and errors are as for Clearance.from_urdf(). robot: arguments of read_joints(). In the required postures
+    (k, n), the capsules keep the margin if clear() finds such capsules, except the capsules of allowed pairs of names.
+    If finer is False, no link is cut because of other links: see Gaps.
 
-    Without tip, the joints are as in Robot.from_urdf(path, base=base, locked=locked, tips=tips, limits=limits), which
-    fixes all other joints. With tip, the joints are as in SerialArm.from_urdf(path, tip, base, limits=limits). Each
-    link, also a tool or a finger
-    beyond the tip, belongs to the last joint between base and tip that moves the link. If no joint between base
-    and tip moves the link, the link belongs to the base. Joints that are not between base and tip are fixed at zero, so
-    the capsules of a gripper or of another arm are valid for that posture only. Visual geometry is not read: a link
-    without collision geometry has no capsule.
-
-    Returns
-    -------
-    list of Capsule
-        From base to tip, in the frames of the robot's links; link i has the frame of joint i's child in the file.
-
-    Raises ValueError if the file is not a valid URDF, has no chain between the links or no collision geometry, or if a
-    mesh is not found or cannot be read; OSError if the file cannot be read; ImportError if an extra is missing.
+    With tip, each link, also a tool or a finger beyond the tip, belongs to the last joint between base and tip that
+    moves the link, or to the base. Other joints are fixed at zero, so the capsules of a gripper or of another arm are
+    valid for that posture only. Visual geometry is not read: a link without collision geometry has no capsule.
     """
     if isinstance(per_link, bool) or not isinstance(per_link, (int, np.integer)) or per_link < 1:
         raise wrong("per_link", per_link, f" = {per_link!r}: must be a whole number, at least 1")
-    joints, places = read_joints(path, tip, base, locked, tips, limits)
+    joints, places = read_joints(path, tip, base, **robot)
     shapes = read_shapes(path)
     if not shapes:
         remedy = "must be on at least one link: add <collision>, or give capsules to Clearance()"
@@ -120,9 +105,10 @@ def read_joints(
     path: str | os.PathLike[str],
     tip: str | None,
     base: str | None,
-    locked: Mapping[str, float] | None,
-    tips: Iterable[str] | None,
-    limits: JointLimits | None,
+    *,
+    locked: Mapping[str, float] | None = None,
+    tips: Iterable[str] | None = None,
+    limits: JointLimits | None = None,
 ) -> tuple[list[TreeJoint], Places]:
     """The moving joints as joints of a tree, and the place of each link of the file."""
     if tip is None:
