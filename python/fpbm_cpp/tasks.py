@@ -203,15 +203,7 @@ class PostureTask(Task):
 # Classes of tasks, by the kind in a table.
 TASKS: dict[str, type[Task]] = {
     each.kind: each
-    for each in (
-        PositionTask,
-        OrientationTask,
-        PoseTask,
-        AxisTask,
-        RelativePoseTask,
-        CenterOfMassTask,
-        PostureTask,
-    )
+    for each in (PositionTask, OrientationTask, PoseTask, AxisTask, RelativePoseTask, CenterOfMassTask, PostureTask)
 }
 
 

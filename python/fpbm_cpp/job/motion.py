@@ -28,6 +28,7 @@ from ..parameter import REQUIRED
 from ..paths import PATH_OPTIONS, Circle, Path
 from ..robots import Robot
 from ..schemes import MVN, Scheme
+from ..skeleton import length
 from ..table import is_by_task, to_table
 from ..tasks import FrameTask, Stack
 from .sections import (
@@ -292,7 +293,7 @@ def _scaled(said: Any, full: Any, arm: Arm | Robot, limits: JointLimits, run: Ta
     The radius is halved until the tip can follow the path, unless HALVINGS do not suffice. run: the options of the run;
     None for a stack, whose paths are not tried.
     """
-    radius = float(f"{CIRCLE * _reach(arm):.1g}")
+    radius = float(f"{CIRCLE * length(arm, np.zeros(arm.dof)):.1g}")
     first = _filled_paths(said, arm, radius)
     if radius == 0.0 or first == _filled_paths(said, arm, 2 * radius):
         return full
@@ -302,19 +303,6 @@ def _scaled(said: Any, full: Any, arm: Arm | Robot, limits: JointLimits, run: Ta
             if _can_follow(arm, make("path", paths, arm), limits, run):
                 return paths
     return first
-
-
-def _reach(arm: Arm | Robot) -> float:
-    """Bound on the distance of a tip from the base [m], with prismatic joints at zero."""
-    if isinstance(arm, PlanarArm):
-        return float(np.sum(arm.lengths))
-    if isinstance(arm, SerialArm):
-        return float(sum(np.linalg.norm(place[:3, 3]) for place in (*(each.placement for each in arm.joints), arm.tip)))
-    assert isinstance(arm, Robot)
-    far = [0.0]
-    for each in arm.joints:
-        far.append(far[each.parent] + float(np.linalg.norm(each.joint.placement[:3, 3])))
-    return max(far)
 
 
 def _can_follow(arm: Arm | Robot, path: Path, limits: JointLimits, run: Table) -> bool:

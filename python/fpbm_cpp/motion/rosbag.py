@@ -17,7 +17,16 @@ from .run_data import RunData
 from .tables import quaternions
 
 
-def to_rosbag(run: RunData, directory: str | os.PathLike[str], frame: str, trajectory: bool) -> None:
+def to_rosbag(
+    run: RunData, directory: str | os.PathLike[str], *, frame: str = "base_link", trajectory: bool = False
+) -> None:
+    """Write a ROS 2 bag, completely or not at all, with the run's times as stamps.
+
+    Needs the extra 'ros', but no ROS installation. The topics are /joint_states, /tip and /tip_reference
+    (JointState, PoseStamped), in the base frame, named `frame`; with trajectory, also /joint_trajectory with one
+    message. If the task leaves the orientation free, /tip has the arm's orientation, and /tip_reference has the
+    identity. Raises FileExistsError if the directory exists.
+    """
     rosbag2, typesys = (extra(f"rosbags.{part}", "to_rosbag", "ros") for part in ("rosbag2", "typesys"))
     if not len(run.t):
         raise ValueError("run: has no samples: must have at least one: run.status has the cause")

@@ -12,8 +12,6 @@ from . import rosbag, tables
 from .run_data import RunData
 
 if TYPE_CHECKING:
-    import pandas as pd
-    import xarray as xr
     from matplotlib.figure import Figure
 
 LONGEST = 200  # Characters of a scheme or a path in the HTML form of a run.
@@ -95,40 +93,10 @@ class Run(RunData):
 
         save(self, file, note, seed)
 
-    def to_pandas(self) -> pd.DataFrame:
-        """Data frame with a row for each sample, and units in frame.attrs["units"]. Needs the extra 'data'.
-
-        Columns t, q_<joint>, qd_<joint>, qdd_<joint>, x, y, z with qx, qy, qz, qw or angle, x_ref and so on, error_x
-        and so on, orientation_error_x and so on; scale and saturated_<joint> within limits, and clearance.
-        """
-        return tables.to_pandas(self)
-
-    def to_csv(self, file: str | os.PathLike[str]) -> None:
-        """Write the columns of to_pandas() as CSV, with headings like 'qd_joint_1 [rad/s]'. Needs no extra.
-
-        Numbers read back are equal to the last bit. An existing file is replaced, completely or not at all.
-        """
-        tables.to_csv(self, file)
-
-    def to_xarray(self) -> xr.Dataset:
-        """Dataset over time, joint and axis, with units as attributes. Needs the extra 'data'.
-
-        Variables q, qd, qdd, x, x_ref, error; for a pose, orientation (a quaternion) or angle, orientation_ref
-        or angle_ref, and orientation_error; scale and saturated within limits, and clearance.
-        """
-        return tables.to_xarray(self)
-
-    def to_rosbag(
-        self, directory: str | os.PathLike[str], *, frame: str = "base_link", trajectory: bool = False
-    ) -> None:
-        """Write a ROS 2 bag, completely or not at all, with the run's times as stamps.
-
-        Needs the extra 'ros', but no ROS installation. The topics are /joint_states, /tip and /tip_reference
-        (JointState, PoseStamped), in the base frame, named `frame`; with trajectory, also /joint_trajectory with one
-        message. If the task leaves the orientation free, /tip has the arm's orientation, and /tip_reference has the
-        identity. Raises FileExistsError if the directory exists.
-        """
-        rosbag.to_rosbag(self, directory, frame, trajectory)
+    to_pandas = tables.to_pandas
+    to_csv = tables.to_csv
+    to_xarray = tables.to_xarray
+    to_rosbag = rosbag.to_rosbag
 
     def _repr_html_(self) -> str:
         rows: list[list[object]] = [

@@ -69,6 +69,11 @@ def _columns(run: RunData) -> Iterator[tuple[str, str, NDArray[Any]]]:
 
 
 def to_pandas(run: RunData) -> "pd.DataFrame":
+    """Data frame with a row for each sample, and units in frame.attrs["units"]. Needs the extra 'data'.
+
+    Columns t, q_<joint>, qd_<joint>, qdd_<joint>, x, y, z with qx, qy, qz, qw or angle, x_ref and so on, error_x
+    and so on, orientation_error_x and so on; scale and saturated_<joint> within limits, and clearance.
+    """
     pandas = extra("pandas", "to_pandas", "data")
     names, units, columns = zip(*_columns(run))
     frame: pd.DataFrame = pandas.DataFrame(dict(enumerate(columns)))  # Names may be repeated.
@@ -78,6 +83,10 @@ def to_pandas(run: RunData) -> "pd.DataFrame":
 
 
 def to_csv(run: RunData, file: str | os.PathLike[str]) -> None:
+    """Write the columns of to_pandas() as CSV, with headings like 'qd_joint_1 [rad/s]'. Needs no extra.
+
+    Numbers read back are equal to the last bit. An existing file is replaced, completely or not at all.
+    """
     names, units, columns = zip(*_columns(run))
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
@@ -88,6 +97,11 @@ def to_csv(run: RunData, file: str | os.PathLike[str]) -> None:
 
 
 def to_xarray(run: RunData) -> "xr.Dataset":
+    """Dataset over time, joint and axis, with units as attributes. Needs the extra 'data'.
+
+    Variables q, qd, qdd, x, x_ref, error; for a pose, orientation (a quaternion) or angle, orientation_ref
+    or angle_ref, and orientation_error; scale and saturated within limits, and clearance.
+    """
     xarray = extra("xarray", "to_xarray", "data")
     coordinates = {
         "time": ("time", run.t, {"units": "s"}),

@@ -75,10 +75,6 @@ class Link:
     parent: int
     parts: list[Part]
 
-    @property
-    def fits(self) -> list[Fit]:
-        return [part.fit for part in self.parts]
-
     def may_collide(self, later: Link) -> bool:
         """Whether a link with an equal or larger number is neither this link nor its child."""
         return later.number > self.number and later.parent != self.number
@@ -102,7 +98,7 @@ class Gaps:
             if not links[i].may_collide(links[j]):
                 continue
             poses = inverse[:, links[i].number] @ frames[:, links[j].number]
-            gaps = capsules_apart(links[i].fits, links[j].fits, poses)
+            gaps = self._gaps((i, j), poses)
             if np.max(gaps) < margin:
                 self._excluded[i, j] = poses
                 continue
@@ -113,33 +109,24 @@ class Gaps:
 
     def worst(self, but: Collection[tuple[int, int]]) -> tuple[int, int] | None:
         """The pair with the largest excess of all pairs that count, except `but`; None if there is no pair."""
-        pairs = [pair for pair in self._cases if pair not in but and self._often(*pair) >= OFTEN]
-        return max(pairs, key=lambda pair: self.excess(*pair), default=None)
+        close = {pair: self._gaps(pair, poses) < self.close for pair, poses in self._cases.items() if pair not in but}
+        pairs = [pair for pair, few in close.items() if few @ self._weights[pair] >= OFTEN]
+        return max(pairs, key=self.excess, default=None)
 
-    def _often(self, i: int, j: int) -> float:
-        """Fraction of the postures in which a pair is too close; at least 1 if it is too close in a first posture."""
-        gaps = capsules_apart(self.links[i].fits, self.links[j].fits, self._cases[i, j])
-        return float((gaps < self.close) @ self._weights[i, j])
+    def excess(self, pair: tuple[int, int], i: int = -1, parts: Sequence[Part] = ()) -> float:
+        """Excess of a pair: the distances by which its capsules are too close, summed over the postures [m].
 
-    def excess(self, i: int, j: int) -> float:
-        """Excess of a pair: the distances by which its capsules are too close, summed over the postures [m]."""
-        gaps = capsules_apart(self.links[i].fits, self.links[j].fits, self._cases[i, j])
-        return float(np.maximum(self.close - gaps, 0.0) @ self._weights[i, j])
+        With other parts of link i, infinite if an unchecked pair would become a checked pair.
+        """
+        for other, poses in self._excluded.items():
+            if i in other and np.max(self._gaps(other, poses, i, parts)) > self.margin / 2:
+                return np.inf
+        lacks = np.maximum(self.close - self._gaps(pair, self._cases[pair], i, parts), 0.0)
+        return float(lacks @ self._weights[pair])
 
-    def excess_with(self, i: int, parts: list[Part], pair: tuple[int, int]) -> float:
-        """Excess of a pair with other parts of link i; infinite if an unchecked pair would become a checked pair."""
-        kept, self.links[i].parts = self.links[i].parts, parts
-        try:
-            found = self.excess(*pair)
-            for (a, b), poses in self._excluded.items():
-                if (
-                    i in (a, b)
-                    and np.max(capsules_apart(self.links[a].fits, self.links[b].fits, poses)) > self.margin / 2
-                ):
-                    return np.inf
-            return found
-        finally:
-            self.links[i].parts = kept
+    def _gaps(self, pair: tuple[int, int], poses: Array, i: int = -1, parts: Sequence[Part] = ()) -> Array:
+        one, other = ([part.fit for part in (parts if k == i else self.links[k].parts)] for k in pair)
+        return capsules_apart(one, other, poses)
 
 
 def _outer(link: Link) -> Shape:

@@ -137,13 +137,13 @@ def refine(links: list[Link], joints: list[TreeJoint], most: int, margin: float)
             for k, part in enumerate(parts if len(parts) < most else []):
                 for both in halves(part):
                     finer = [*parts[:k], *both, *parts[k + 1 :]]
-                    tried.append((gaps.excess_with(i, finer, pair), i, finer))
+                    tried.append((gaps.excess(pair, i, finer), i, finer))
         tried = sorted(tried, key=lambda each: each[0])[:SEARCHED]
         for k, (_, i, finer) in enumerate(tried):
             finer = [part if part in links[i].parts else rough_part(part.shape) for part in finer]
-            tried[k] = gaps.excess_with(i, finer, pair), i, finer
+            tried[k] = gaps.excess(pair, i, finer), i, finer
         excess, i, finer = min(tried, key=lambda each: each[0], default=(np.inf, 0, []))
-        if excess > GAIN * gaps.excess(*pair):
+        if excess > GAIN * gaps.excess(pair):
             given_up.add(pair)
         else:
             links[i].parts = [part.contained() for part in finer]
