@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,23 +10,18 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 
 if TYPE_CHECKING:
+    Got = TypeVar("Got")
+    Given = TypeVar("Given")
+
     # Types of data class fields that accept values of more types than they return.
+    class Field(Generic[Got, Given]):
+        def __get__(self, thing: object, owner: Any = None) -> Got: ...
+        def __set__(self, thing: object, value: Given) -> None: ...
 
-    class ArrayField:
-        def __get__(self, thing: object, owner: Any = None) -> Array: ...
-        def __set__(self, thing: object, value: ArrayLike) -> None: ...
-
-    class OptionalArrayField:
-        def __get__(self, thing: object, owner: Any = None) -> Array | None: ...
-        def __set__(self, thing: object, value: ArrayLike | None) -> None: ...
-
-    class FilledArrayField:
-        def __get__(self, thing: object, owner: Any = None) -> Array: ...
-        def __set__(self, thing: object, value: ArrayLike | None) -> None: ...
-
-    class DerivedField:
-        def __get__(self, thing: object, owner: Any = None) -> float: ...
-        def __set__(self, thing: object, value: float | None) -> None: ...
+    ArrayField = Field[Array, ArrayLike]
+    OptionalArrayField = Field[Array | None, ArrayLike | None]
+    FilledArrayField = Field[Array, ArrayLike | None]
+    DerivedField = Field[float, float | None]
 
 else:
     ArrayField = OptionalArrayField = FilledArrayField = DerivedField = Any

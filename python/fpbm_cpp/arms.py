@@ -14,7 +14,7 @@ from ._core import PRESETS, dh, preset
 from ._core import Arm as CoreArm
 from ._types import ArrayField
 from .errors import not_one_of, require
-from .joints import BOUND, FRAME, IDENTITY, Joint, JointLimits, joint_table, require_length
+from .joints import FRAME, IDENTITY, Joint, JointLimits, joint_table, limited, require_length
 from .parameter import POSITIVE, Data, Parameter, data, from_file, parameter
 from .shown import html_table
 from .urdf.chain import read_urdf
@@ -122,17 +122,14 @@ class SerialArm(Arm):
         """
         rows = Parameter(name="table", shape="(n, 4)").check(table)
         joints, end = dh(rows, convention, ["revolute"] * len(rows) if types is None else list(types))
-        bounds = {"lower": lower, "upper": upper, "velocity": velocity, "acceleration": acceleration, "jerk": jerk}
-        columns = {name: replace(BOUND, name=name, default=None).check(values) for name, values in bounds.items()}
-        columns = {name: [v] * len(rows) if isinstance(v, float) else v for name, v in columns.items()}
-        for name, values in {**columns, "names": names}.items():
-            if values is not None:
-                require_length(name, values, len(rows))
-                for joint, value in zip(joints, values):
-                    joint["name" if name == "names" else name] = value
+        limits = JointLimits(lower=lower, upper=upper, velocity=velocity, acceleration=acceleration, jerk=jerk)
+        if names is not None:
+            require_length("names", names, len(rows))
+            joints = [{**joint, "name": name} for joint, name in zip(joints, names)]
         if base is not None and joints:
             joints[0]["placement"] = _frame("base", base) @ joints[0]["placement"]
-        return cls([Joint(**joint) for joint in joints], end if tip is None else end @ _frame("tip", tip))
+        chain = limited([Joint(**joint) for joint in joints], limits)
+        return cls(chain, end if tip is None else end @ _frame("tip", tip))
 
     @classmethod
     def from_urdf(
