@@ -71,7 +71,6 @@ FEW_TASKS = ({"level": 0, "kind": "position"}, {"level": 1, "kind": "axis"})
 MOST = 3**7  # Largest number of candidate postures.
 GOOD = 0.8  # Accepted inverse condition number, relative to the best.
 
-
 CIRCLE = 0.08  # Default radius of a circle, in reaches: 0.1 m for the preset arms, whose reach is 1.2 m to 1.7 m.
 HALVINGS = 8  # Smaller radii that are tried.
 TRIAL_GAIN, TRIAL_STEP, TRIAL_STEPS, TRIAL_ERROR = 10.0, 0.01, 200, 1e-3  # [1/s], [s], at least, [m]
