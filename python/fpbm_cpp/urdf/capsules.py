@@ -47,7 +47,7 @@ def capsules_of(
     """Tight capsules that contain the collision geometry of the links of a URDF file, from base to tip. Deterministic.
 
     Arguments and errors are as for Clearance.from_urdf(). robot: arguments of read_joints(). In the required postures
-    (k, n), the capsules keep the margin if clear() finds such capsules, except the capsules of allowed pairs of names.
+    (k, n), the capsules keep the margin as far as clear() succeeds, except the capsules of allowed pairs of names.
     If finer is False, no link is cut because of other links: see Gaps.
 
     With tip, each link, also a tool or a finger beyond the tip, belongs to the last joint between base and tip that

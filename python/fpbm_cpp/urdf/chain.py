@@ -394,10 +394,48 @@ def read_tree(
         links, every, masses = read_robot(os.fsdecode(path), INERTIALS)
         above = tree_of(links, every)
         held = _held(above, every, dict(locked or {}), tips)
-        robot = _robot(above, every, masses, held, base, limits, said)
+        own = limits.given if limits is not None else {}
+        names = {joint.name for joint in every}
+        lost = [joint.name for joint in every if joint.name not in held and joint.mimic and joint.mimic[0] not in names]
+        if lost:
+            problem = "must mimic a joint of the file: fix the joints by locked= or tips=, or correct the names"
+            raise ValueError(f"joints mimic joints that do not exist: {listed(lost)}: {problem}")
+        for joint in every:
+            if joint.type not in TREE_TYPES:
+                raise ValueError(f"joint {joint.name!r}: type = {joint.type!r}: must be {', '.join(TREE_TYPES)}")
+            if joint.type in ("floating", "planar") and base is None:
+                demand = "base= must be 'fixed' or 'planar', to replace it"
+                raise ValueError(f"joint {joint.name!r} is {joint.type}: {demand}")
+        joints = list(PLANAR_BASE) if base == "planar" else []
+        parents = list(range(len(joints)))
+        root = next(link for link, joint in above.items() if joint is None)
+        places = {root: (len(joints), frame_at())}
+        with errors_of(None, ", or fix the joint by locked= or tips="):
+            follows = follows_of(every, {joint.name: None if joint.name in held else joint.mimic for joint in every})
+            free = [joint for joint in every if joint.name not in held and joint.name not in follows]
+            fixed = without_range(free, own, said)
+            parents += _add(_depth_first(above), follows, {**held, **fixed}, own, joints, places)
+        if not joints:
+            remedy = f"{FREE}, or if" if fixed else "if"
+            raise ValueError(f"no joints move: must be 1 to {MAX_DOF}: {remedy} the base moves, give base='planar'")
+        if len(joints) > MAX_DOF:
+            remedy = "fix the other joints by locked= or tips="
+            raise ValueError(f"{len(joints)} joints move: must be 1 to {MAX_DOF}; {remedy}")
+        moving = {joint.name for joint in joints}
+        followers = {name: follow for name, follow in follows.items() if name in moving}
+        coupled = limited(coupled_joints(joints, followers, said), limits)
+        weights = _weights(places, masses, len(joints) + 1)
     if notes is None:
         warn(path, said, 4)
-    return robot
+    return {
+        "joints": [
+            TreeJoint(joint, parent, mass=mass, center=center)
+            for joint, parent, (mass, center) in zip(coupled, parents, weights[1:])
+        ],
+        "named_frames": [NamedFrame(link, number, frame) for link, (number, frame) in places.items()],
+        "base_mass": weights[0].mass,
+        "base_center": weights[0].center,
+    }
 
 
 def _held(
@@ -444,14 +482,12 @@ def _needed(above: Tree, joints: Mapping[str, UrdfJoint], tips: Iterable[str]) -
     for tip in tips:
         if tip not in above:
             raise wrong("tips", tip, f" has {tip!r}: must be links{_perhaps(str(tip), above)}")
-        link = tip
-        while (joint := above[link]) is not None:
+        for joint in _to_root(above, "tips", tip):
             while joint.name not in needed:
                 needed.add(joint.name)
                 if joint.mimic is None or joint.mimic[0] not in joints:
                     break
                 joint = joints[joint.mimic[0]]
-            link = above[link].parent  # type: ignore[union-attr]
     return needed
 
 
@@ -469,55 +505,6 @@ def _depth_first(above: Tree) -> Iterator[UrdfJoint]:
         joint = left.pop()
         yield joint
         left += below[joint.child][::-1]
-
-
-def _robot(
-    above: Tree,
-    every: list[UrdfJoint],
-    masses: Mapping[str, Mass],
-    held: dict[str, float],
-    base: str | None,
-    limits: JointLimits | None,
-    notes: list[str],
-) -> dict[str, Any]:
-    own = limits.given if limits is not None else {}
-    names = {joint.name for joint in every}
-    lost = [joint.name for joint in every if joint.name not in held and joint.mimic and joint.mimic[0] not in names]
-    if lost:
-        problem = "must mimic a joint of the file: fix the joints by locked= or tips=, or correct the names"
-        raise ValueError(f"joints mimic joints that do not exist: {listed(lost)}: {problem}")
-    for joint in every:
-        if joint.type not in TREE_TYPES:
-            raise ValueError(f"joint {joint.name!r}: type = {joint.type!r}: must be {', '.join(TREE_TYPES)}")
-        if joint.type in ("floating", "planar") and base is None:
-            raise ValueError(f"joint {joint.name!r} is {joint.type}: base= must be 'fixed' or 'planar', to replace it")
-    joints = list(PLANAR_BASE) if base == "planar" else []
-    parents = list(range(len(joints)))
-    root = next(link for link, joint in above.items() if joint is None)
-    places = {root: (len(joints), frame_at())}
-    with errors_of(None, ", or fix the joint by locked= or tips="):
-        follows = follows_of(every, {joint.name: None if joint.name in held else joint.mimic for joint in every})
-        free = [joint for joint in every if joint.name not in held and joint.name not in follows]
-        fixed = without_range(free, own, notes)
-        parents += _add(_depth_first(above), follows, {**held, **fixed}, own, joints, places)
-    if not joints:
-        remedy = f"{FREE}, or if" if fixed else "if"
-        raise ValueError(f"no joints move: must be 1 to {MAX_DOF}: {remedy} the base moves, give base='planar'")
-    if len(joints) > MAX_DOF:
-        raise ValueError(f"{len(joints)} joints move: must be 1 to {MAX_DOF}; fix the other joints by locked= or tips=")
-    moving = {joint.name for joint in joints}
-    followers = {name: follow for name, follow in follows.items() if name in moving}
-    coupled = limited(coupled_joints(joints, followers, notes), limits)
-    weights = _weights(places, masses, len(joints) + 1)
-    return {
-        "joints": [
-            TreeJoint(joint, parent, mass=mass, center=center)
-            for joint, parent, (mass, center) in zip(coupled, parents, weights[1:])
-        ],
-        "named_frames": [NamedFrame(link, number, frame) for link, (number, frame) in places.items()],
-        "base_mass": weights[0].mass,
-        "base_center": weights[0].center,
-    }
 
 
 def _weights(places: Places, masses: Mapping[str, Mass], count: int) -> list[Mass]:
