@@ -293,15 +293,14 @@ def _scaled(said: Any, full: Any, arm: Arm | Robot, limits: JointLimits, run: Ta
     None for a stack, whose paths are not tried.
     """
     radius = float(f"{CIRCLE * length(arm, np.zeros(arm.dof)):.1g}")
-    first = _filled_paths(said, arm, radius)
-    if radius == 0.0 or first == _filled_paths(said, arm, 2 * radius):
+    if radius == 0.0 or _filled_paths(said, arm, radius) == _filled_paths(said, arm, 2 * radius):
         return full
     if run is not None:
         for halvings in range(HALVINGS + 1):
             paths = _filled_paths(said, arm, radius / 2**halvings)
             if _can_follow(arm, make("path", paths, arm), limits, run):
                 return paths
-    return first
+    return _filled_paths(said, arm, radius)
 
 
 def _can_follow(arm: Arm | Robot, path: Path, limits: JointLimits, run: Table) -> bool:
