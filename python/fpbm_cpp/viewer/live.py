@@ -11,9 +11,8 @@ from .._types import Array
 from ..skeleton import joint_labels
 from ..tasks import FrameTask
 from .frames import distances, frame_of
-from .loop import ServoLoop
+from .loop import SECONDS, ServoLoop, Strip
 from .readout import BAD, GOOD, LINES, sentence, table
-from .strip import SECONDS, Strip
 
 FAIR = "#8A6100"
 WHOLE = 0.999  # Scale of a level that is not slowed, up to round-off.
