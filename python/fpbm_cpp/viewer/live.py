@@ -1,7 +1,6 @@
 """Text, numbers and curves of a live arm: its status, and its motion of the last ten seconds relative to its bounds."""
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 from viser import GuiApi
@@ -11,8 +10,8 @@ from .._types import Array
 from ..skeleton import joint_labels
 from ..tasks import FrameTask
 from .frames import distances, frame_of
-from .loop import SECONDS, ServoLoop, Strip
-from .readout import BAD, GOOD, LINES, sentence, table
+from .loop import SECONDS, ServoLoop
+from .readout import BAD, GOOD, LINES, curve, sentence, table
 
 FAIR = "#8A6100"
 WHOLE = 0.999  # Scale of a level that is not slowed, up to round-off.
@@ -54,31 +53,32 @@ def _words(loop: ServoLoop) -> tuple[str, str]:
     status, scales = loop.status, None if loop.tick is None else loop.tick.scales
     if status is Status.SLOWED and loop.stack is not None and scales is not None and scales[0] > WHOLE:
         late = [task.name for level, scale in zip(loop.stack.levels, scales) if scale < WHOLE for task in level]
-        return (
-            f"{', '.join(late) or 'a lower level'}: slowed by higher levels and joint limits.",
-            FAIR,
-        )
+        return f"{', '.join(late) or 'a lower level'}: slowed by higher levels and joint limits.", FAIR
     text = f"{message(status)}. {HINTS.get(status, advice(status))}".strip()
     return text, COLOURS.get(status, BAD)
 
 
-def _rows(loop: ServoLoop) -> list[tuple[str, ...]]:
+def _rows(loop: ServoLoop) -> Iterator[tuple[str, ...]]:
     _, worst = loop.strip.curves()
-    nothing = np.full(len(worst), np.nan)
     there = worst[:, ~np.isnan(worst[0])]
-    now = there[:, -1] if there.size else nothing
-    far = np.append(there[:3].max(axis=1), there[3:].min(axis=1)) if there.size else nothing
-    names = [*(f"joint {name}" for name in NAMES), *_scales(loop)]
-    known = [*loop.strip.bounded, *(True for _ in _scales(loop))]
-    cells = [(_percent(a), _percent(b)) if there else ("no bound", "") for a, b, there in zip(now, far, known)]
-    joints = [label for label, flag in zip(joint_labels(loop.arm), _on_bounds(loop)) if flag]
-    return [
-        ("th", "largest fraction of a bound", "now", f"in {SECONDS:g} s"),
-        *(("td", name, *cell) for name, cell in zip(names, cells)),
-        ("td", "joints on a bound", ", ".join(joints) or "none", ""),
-        *_distances(loop),
-        *_nearest(loop),
-    ]
+    now, far = "", ""
+    yield "th", "largest fraction of a bound", "now", f"in {SECONDS:g} s"
+    names = [f"joint {name}" for name in NAMES]
+    for i, (name, bounded) in enumerate(zip([*names, *_scales(loop)], [*loop.strip.bounded, *[True] * len(worst)])):
+        if there.size:
+            now, far = (f"{100.0 * x:.0f} %" for x in (there[i, -1], there[i].max() if i < 3 else there[i].min()))
+        yield "td", name, *((now, far) if bounded else ("no bound", ""))
+    limits, q, tick = loop.limits, loop.q, loop.tick
+    on_bound = (q < limits.lower + NEAR) | (q > limits.upper - NEAR)
+    on_bound = on_bound if tick is None else on_bound | tick.saturated
+    joints = [label for label, flag in zip(joint_labels(loop.arm), on_bound) if flag]
+    yield "td", "joints on a bound", ", ".join(joints) or "none", ""
+    for task in loop.tasks:
+        if isinstance(task, FrameTask):
+            found = distances(task, frame_of(task, loop.target_of(task.name)), loop.frame(task.name))
+            yield "td", f"from {task.name} to handle", ", ".join(f"{x:.3f} {unit}" for unit, x in found.items()), ""
+    if tick is not None and tick.nearest is not None:
+        yield "td", "nearest shapes", f"{tick.nearest.distance:.3f} m", " and ".join(tick.nearest.pair)
 
 
 def _scales(loop: ServoLoop) -> list[str]:
@@ -88,48 +88,18 @@ def _scales(loop: ServoLoop) -> list[str]:
     return [f"scale of {', '.join(task.name for task in level)}" for level in loop.stack.levels]
 
 
-def _distances(loop: ServoLoop) -> Iterator[tuple[str, ...]]:
-    """Distance of each frame from its handle."""
-    for task in loop.tasks:
-        if isinstance(task, FrameTask):
-            found = distances(task, frame_of(task, loop.target_of(task.name)), loop.frame(task.name))
-            yield "td", f"from {task.name} to handle", ", ".join(f"{x:.3f} {unit}" for unit, x in found.items()), ""
-
-
-def _nearest(loop: ServoLoop) -> Iterator[tuple[str, ...]]:
-    """The nearest pair of shapes, if any pair is checked."""
-    if loop.tick is not None and loop.tick.nearest is not None:
-        yield "td", "nearest shapes", f"{loop.tick.nearest.distance:.3f} m", " and ".join(loop.tick.nearest.pair)
-
-
-def _on_bounds(loop: ServoLoop) -> list[bool]:
-    """Joints that were on a bound in the last tick, or are at an end of their range."""
-    limits, q = loop.limits, loop.q
-    ends = (q < limits.lower + NEAR) | (q > limits.upper - NEAR)
-    return list(ends if loop.tick is None else ends | loop.tick.saturated)
-
-
-def _percent(share: float) -> str:
-    return "" if np.isnan(share) else f"{100.0 * share:.0f} %"
-
-
 class StripChart:
     """The last ten seconds: each quantity of the joint closest to its bound, and the scale of each level [%]."""
 
     def __init__(self, gui: GuiApi, loop: ServoLoop) -> None:
         known = zip(NAMES, LINES[:1] + LINES[5:6] + LINES[3:4], loop.strip.bounded)
-        curves: list[dict[str, Any]] = [
-            {"label": name if there else f"{name} (no bound)", "stroke": colour, "width": 1.6}
-            for name, colour, there in known
-        ]
-        scales = [
-            {"label": name, "stroke": colour, "width": 1.6, "dash": [6, 3]}
-            for name, colour in zip(_scales(loop), LINES[6:7] + LINES[1:3] + LINES[4:5])
-        ]
+        curves = [curve(name if there else f"{name} (no bound)", colour) for name, colour, there in known]
+        scales = zip(_scales(loop), LINES[6:7] + LINES[1:3] + LINES[4:5])
+        curves += [curve(name, colour, dash=[6, 3]) for name, colour in scales]
         with gui.add_folder(f"Last {SECONDS:g} s"):
             self._plot = gui.add_uplot(
-                self._data(loop.strip),
-                ({"label": "t [s]"}, *({**curve, "points": {"show": False}} for curve in (*curves, *scales))),
+                self._data(loop),
+                ({"label": "t [s]"}, *curves),
                 title="largest fraction of a bound [%]",
                 scales={"x": {"time": False}, "y": {"range": (0.0, 105.0)}},
                 axes=({"size": 36}, {"size": 44}),
@@ -139,8 +109,8 @@ class StripChart:
             )
 
     def show(self, loop: ServoLoop) -> None:
-        self._plot.data = self._data(loop.strip)
+        self._plot.data = self._data(loop)
 
-    def _data(self, strip: Strip) -> tuple[Array, ...]:
-        t, worst = strip.curves()
+    def _data(self, loop: ServoLoop) -> tuple[Array, ...]:
+        t, worst = loop.strip.curves()
         return (t, *(100.0 * worst))

@@ -2,6 +2,7 @@
 
 import html
 from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
 from viser import GuiApi
@@ -30,11 +31,11 @@ class Readout:
     def show(self, playback: Playback) -> None:
         self._playback, status = playback, playback.run.status
         stopped = f"stopped after t = {status.time:g} s: {message(status.code)}. {status.advice}"
-        self._say(str(status) if status else stopped, GOOD if status else BAD)
+        self._status.content = sentence(*((str(status), GOOD) if status else (stopped, BAD)))
 
     def refuse(self, reason: str) -> None:
         """Show why the requested motion cannot run."""
-        self._say(f"not run: {reason}", BAD)
+        self._status.content = sentence(f"not run: {reason}", BAD)
 
     def at(self, sample: int) -> None:
         playback, run = self._playback, self._playback.run
@@ -56,9 +57,6 @@ class Readout:
             now, worst = f"{nearest.distance:.3f} m ({' and '.join(nearest.pair)})", f"{playback.distances.min():.3f} m"
             rows.append(("td", "nearest shapes", now, worst))
         self._table.content = table(rows)
-
-    def _say(self, text: str, colour: str) -> None:
-        self._status.content = sentence(text, colour)
 
 
 def sentence(text: str, colour: str) -> str:
@@ -85,6 +83,11 @@ def quantities(playback: Playback) -> dict[str, tuple[Array, str]]:
     return found
 
 
+def curve(label: str, colour: str, dash: Sequence[int] = ()) -> dict[str, Any]:
+    """The style of a curve of a chart."""
+    return {"label": label, "stroke": colour, "width": 1.6, "dash": list(dash), "points": {"show": False}}
+
+
 class Chart:
     """A chart of the selected quantity over the planned duration, with a line at the shown time."""
 
@@ -105,11 +108,9 @@ class Chart:
         room = 0.05 * (high - low) or 1.0
         self._range = low - room, high + room
         lines = [
-            {"label": label, "stroke": LINES[i % len(LINES)], "width": 1.6, "dash": [] if i < len(LINES) else [6, 3]}
-            for i, label in enumerate(labels)
+            curve(label, LINES[i % len(LINES)], dash=[] if i < len(LINES) else [6, 3]) for i, label in enumerate(labels)
         ]
-        now = {"label": "now", "stroke": NOW, "width": 1.5}
-        self._plot.series = ({"label": "t [s]"}, *({**line, "points": {"show": False}} for line in (*lines, now)))
+        self._plot.series = ({"label": "t [s]"}, *lines, curve("now", NOW))
         self._plot.scales = {"x": {"time": False, "range": (0.0, self._duration)}, "y": {"range": self._range}}
         self._plot.data = (playback.run.t[playback.frames], *values.T, self._now())
 

@@ -15,6 +15,8 @@ from ..tasks import TASKS, PostureTask, Stack, Task
 
 REPEAT = 0.1  # A handle without events is at rest: the target of this handle is repeated after this time [s].
 FILTERED = ("position", "pose")  # Tasks with a filter for targets; targets of other tasks are references.
+# Bounds of default filters.
+ANGULAR = {"angular_velocity": 2.0, "angular_acceleration": 10.0, "angular_jerk": 200.0}
 ROUND_OFF = 1e-8  # Tolerance of the entries of a rotation.
 TIP = "tip"  # Name of the only task without a stack.
 
@@ -33,7 +35,8 @@ class Targets:
         starts = self._by_name(tip)
         for each in self.tasks:
             if each.kind in FILTERED and each.name not in filters:
-                filters[each.name] = usual_filter(each, starts[each.name], length, dt)
+                linear = {"velocity": length, "acceleration": 5.0 * length, "jerk": 100.0 * length}
+                filters[each.name] = TargetFilter(starts[each.name], **linear, **ANGULAR, task=each.kind, dt=dt)
         self._targets = {each.name: Target(each, starts[each.name], filters.get(each.name)) for each in self.tasks}
 
     @property
@@ -117,17 +120,3 @@ class Target:
         if self._task.kind == "orientation":
             return bool(np.abs(x @ x.T - np.eye(3)).max() < ROUND_OFF and np.linalg.det(x) > 0.0)
         return bool(np.isfinite(x).all() and (self._task.kind != "axis" or x.any()))
-
-
-def usual_filter(task: Task, start: Array, length: float, dt: float) -> TargetFilter:
-    return TargetFilter(
-        start,
-        velocity=length,
-        acceleration=5.0 * length,
-        jerk=100.0 * length,
-        angular_velocity=2.0,
-        angular_acceleration=10.0,
-        angular_jerk=200.0,
-        task=task.kind,
-        dt=dt,
-    )
