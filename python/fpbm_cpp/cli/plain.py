@@ -83,7 +83,7 @@ def refuse_links(preset: Path, *links: str | None) -> None:
 
 
 def read_arm(arm: Path, tip: str | None, base: str | None, limits: JointLimits | None = None) -> SerialArm:
-    """The arm of a preset or of a URDF file, with these bounds in place of its own."""
+    """The arm of a preset or of a URDF file; the limits replace its own bounds."""
     if str(arm) in PRESETS:
         refuse_links(arm, tip, base)
         preset = SerialArm.preset(str(arm))
