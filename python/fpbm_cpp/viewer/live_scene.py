@@ -11,13 +11,13 @@ from viser import TransformControlsHandle, ViserServer
 
 from .._types import Array
 from ..arms import PlanarArm
+from ..obstacle import HalfSpace
 from ..robots import Robot
 from ..skeleton import frames_of, joint_points, length
 from ..tasks import FrameTask
 from .frames import in_space
 from .handle import Handle
 from .loop import SECONDS, ServoLoop
-from .obstacles import can_be_dragged
 from .page import RATE
 from .scene import TARGET, TIP, Meshes, Scene, segments
 from .shapes import centre
@@ -52,7 +52,7 @@ class LiveScene(Scene):
         self._grips = [
             (centre(shape), self._grip(i, loop, shape.name, centre(shape)))
             for i, shape in enumerate(obstacles)
-            if can_be_dragged(shape)
+            if not isinstance(shape, HalfSpace)
         ]
         self.restart(loop)
 

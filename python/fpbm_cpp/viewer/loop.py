@@ -85,9 +85,7 @@ class ServoLoop:
     A stack replaces task. Each position and pose of the stack has a filter; targets of other tasks are references
     without a filter. The first target of a task is its own x or q, or its start.
 
-    targets is a filter with its own bounds, or for a stack, a dictionary of filters by name. The default bounds depend
-    on the length L of the arm: L per second, 5 L/s^2 and 100 L/s^3; 2 rad/s, 10 rad/s^2 and 200 rad/s^3. All other
-    parameters are as for Tracker.
+    targets and the default filters are as for servo(), all other parameters as for Tracker.
 
     Raises ValueError as Tracker does, and if a filter is for another task or tick.
     """
@@ -116,9 +114,10 @@ class ServoLoop:
         self._others = tuple(each for each in bounds if not isinstance(each, Clearance))
         self._tracker = self._new_tracker(scheme, self._q0)  # Rejects an invalid task or stack.
         self._targets = Targets(task, stack, self._tracker.tip, targets, length(arm, self._q0), dt)
+        self.tasks: Sequence[Task] = self._targets.tasks
         self._tracker.tick(self._targets.references)  # Rejects an invalid filter.
         self._said: deque[Status] = deque(maxlen=max(round(SAID / dt), 1))
-        self._tick: Tick | None = None
+        self.tick: Tick | None = None  # The last tick.
         self._seen: list[Array] = []  # Postures before each change.
         self._last: float = 0.0  # Time of the last ticks.
         self.restart()
@@ -130,7 +129,7 @@ class ServoLoop:
         """
         with self._lock:
             now = self._clock()
-            return self._targets.of(task).push(x, now, self._stamp(now))
+            return self._targets.push(task, x, now, self._stamp(now))
 
     def advance(self) -> list[Tick]:
         """Run the ticks that are due."""
@@ -141,13 +140,13 @@ class ServoLoop:
             self._last = now
             due = int(self._owed / self.dt)
             self._owed -= due * self.dt
-            self._time += due * self.dt
+            self.time += due * self.dt
             ticks = []
             for _ in range(due):
                 self._obstacles.step(self._tracker)
                 ticks.append(self._tracker.tick(self._targets.references))
             if ticks:
-                self._tick = ticks[-1]
+                self.tick = ticks[-1]
                 self._said.extend(tick.status for tick in ticks)
                 self.strip.add(ticks)
             return ticks
@@ -160,13 +159,13 @@ class ServoLoop:
     def stop(self) -> None:
         """Bring every joint to rest as fast as the limits allow."""
         with self._lock:
-            self._stopped = True
+            self.stopped = True
             self._tracker.stop()
 
     def resume(self) -> None:
         """Follow the target again."""
         with self._lock:
-            self._stopped = False
+            self.stopped = False
             self._tracker.resume()
 
     def restart(self) -> None:
@@ -174,12 +173,12 @@ class ServoLoop:
         with self._lock:
             self._obstacles.restart()
             self._tracker = self._new_tracker(self._scheme, self._q0)
-            self._stopped = False
-            self._tick = None
+            self.stopped = False
+            self.tick = None
             self._seen = []
             self._said.clear()
             self.strip: Strip = Strip(self.limits, self.dt, 1 if self.stack is None else len(self.stack.levels))
-            self._time: float = 0.0
+            self.time: float = 0.0  # Simulated time [s].
             self._owed: float = 0.0  # Elapsed time that no tick has simulated [s], less than a tick.
             self._last = self._clock()
             self._targets.restart(self._tracker.tip, self._last)
@@ -199,7 +198,7 @@ class ServoLoop:
             self._seen = [*self._seen, here] if unseen else [here]
             self._tracker = self._new_tracker(self._scheme, (unseen or far)[0])
             self._said.clear()
-            if self._stopped:
+            if self.stopped:
                 self._tracker.stop()
             return True
 
@@ -214,13 +213,8 @@ class ServoLoop:
             now = self._tracker
             self._tracker = self._new_tracker(scheme, now.q, qd0=now.qd, qdd0=now.qdd)
             self._scheme = scheme
-            if self._stopped:
+            if self.stopped:
                 self._tracker.stop()
-
-    @property
-    def tasks(self) -> Sequence[Task]:
-        """The tasks of the stack, or the tip's only task."""
-        return self._targets.tasks
 
     @property
     def clearance(self) -> Clearance | None:
@@ -244,21 +238,11 @@ class ServoLoop:
 
     def target_of(self, task: str) -> Array:
         """The newest target of the task of that name."""
-        return self._targets.of(task).x.copy()
+        return self._targets.of(task)
 
     def frame(self, task: str) -> Array:
         """The frame of the task of that name, shape (4, 4); for an axis, z is its direction."""
         return frames_of(self.arm, self.q, "tip") if self.stack is None else self._tracker.frame(task)
-
-    @property
-    def time(self) -> float:
-        """Simulated time [s]."""
-        return self._time
-
-    @property
-    def tick(self) -> Tick | None:
-        """The last tick; None before the first."""
-        return self._tick
 
     @property
     def status(self) -> Status:
@@ -270,11 +254,6 @@ class ServoLoop:
     def bounds(self) -> tuple[Bound, ...]:
         """The bounds, with the obstacles at their present places."""
         return self._others if self.clearance is None else (self.clearance, *self._others)
-
-    @property
-    def stopped(self) -> bool:
-        """Whether stop() was called last, not resume()."""
-        return self._stopped
 
     def _new_tracker(self, scheme: Scheme, q0: Array, **state: Any) -> Tracker:
         return Tracker(self.arm, scheme, q0, dt=self.dt, bounds=self.bounds, **self._how, **state)
@@ -291,4 +270,4 @@ class ServoLoop:
 
     def _stamp(self, now: float) -> float:
         """Time on the clock of the ticks, without the time that a slow machine drops."""
-        return self._time + self._owed + min(now - self._last, MOST)
+        return self.time + self._owed + min(now - self._last, MOST)

@@ -16,10 +16,10 @@ from ..errors import wrong
 from ..robots import Robot
 from ..schemes import Scheme
 from .controls import Controls
-from .live import LiveReadout, StripChart
 from .live_scene import LiveScene
 from .loop import ServoLoop
 from .page import Page
+from .readout import LiveReadout, StripChart
 from .scene import Meshes
 
 
