@@ -7,12 +7,12 @@ from typing import Any
 import click
 import numpy as np
 
-from .._core import PRESETS
+from .._core import PRESETS, rotation
 from .._types import Array
-from ..arms import SerialArm
 from ..motion.comparison import columns
 from ..schemes import FPBM
-from .plain import PLACE, Plain, file_errors, import_viser
+from ..urdf.chain import pose
+from .plain import PLACE, Plain, import_viser, read_arm
 
 ROTATIONS = {3: "roll, pitch, yaw about fixed axes [rad]", 4: "quaternion x, y, z, w", 9: "matrix, row by row"}
 RANKS = {"distance": "distance from the start", "manipulability": "manipulability", "ranges": "distance from the ends"}
@@ -53,18 +53,12 @@ def rotation_matrix(numbers: Array) -> Array:
     """Rotation matrix of roll, pitch and yaw, of a quaternion of any length, or of nine entries."""
     if numbers.size == 9:
         return numbers.reshape(3, 3)
-    if numbers.size == 4:
-        length = np.linalg.norm(numbers)
-        if not length > 0:
-            raise click.ClickException("--rotation is zero: a quaternion must have a nonzero length")
-        x, y, z, w = numbers / length
-        skew = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-        return np.asarray(np.eye(3) + 2 * w * skew + 2 * skew @ skew)
-    (cr, cp, cy), (sr, sp, sy) = np.cos(numbers), np.sin(numbers)
-    about_x = np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]])
-    about_y = np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]])
-    about_z = np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]])
-    return np.asarray(about_z @ about_y @ about_x)
+    if numbers.size == 3:
+        return pose([0.0, 0.0, 0.0], numbers)[:3, :3]
+    vector, length = numbers[:3], float(np.linalg.norm(numbers[:3]))
+    if not numbers.any():
+        raise click.ClickException("--rotation is zero: a quaternion must have a nonzero length")
+    return rotation(2.0 * np.arctan2(length, numbers[3]) * vector / (length or 1.0))
 
 
 @click.command(
@@ -112,12 +106,12 @@ def inverse(
     replaces the distance from the start.
     """
     try:
-        chain = _arm(arm, tip, base)
+        chain = read_arm(arm, tip, base)
         target: Any = _numbers("--position", position, [3])
         if rotation is not None:
             turn = rotation_matrix(_numbers("--rotation", rotation, list(ROTATIONS)))
             target = np.block([[turn, target[:, None]], [np.zeros((1, 3)), np.ones((1, 1))]])
-        begin = _middle(chain) if start is None else _numbers("--start", start, [chain.dof])
+        begin = None if start is None else _numbers("--start", start, [chain.dof])
         task = "position" if rotation is None else "pose"
         options: dict[str, Any] = {"task": task, "starts": starts, "tolerance": tolerance}
         found = chain.inverse_all(target, begin, count, rank=rank, **options)
@@ -147,20 +141,3 @@ def inverse(
 
         scheme = FPBM(0.6, weights=np.ones(chain.dof), k1=10.0, k2=25.0, null_damping=2.0)
         servo(chain, scheme, shown[0].q, task=task, urdf=None if str(arm) in PRESETS else arm)
-
-
-def _middle(arm: SerialArm) -> Array:
-    """The middle of the ranges; 0 for a joint without ends."""
-    middle = (arm.limits.lower + arm.limits.upper) / 2
-    return np.where(np.isfinite(middle), middle, 0.0)
-
-
-def _arm(arm: Path, tip: str | None, base: str | None) -> SerialArm:
-    if str(arm) in PRESETS:
-        if tip or base:
-            raise click.UsageError(f"{arm} is a preset: --tip and --base are for URDF files.")
-        return SerialArm.preset(str(arm))
-    if tip is None:
-        raise click.UsageError("a URDF file needs --tip LINK.")
-    with file_errors("read", arm):
-        return SerialArm.from_urdf(arm, tip, base)

@@ -6,13 +6,17 @@ import sys
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from .._core import PRESETS
+from ..arms import SerialArm
 from ..files import write_whole
+from ..joints import JointLimits, limited
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -69,6 +73,25 @@ def file_errors(doing: str, place: Path | None = None) -> Iterator[None]:
         reason = "it is a file: give a folder" if isinstance(error, FileExistsError) else error.strerror
         where = place or error.filename2 or error.filename
         raise click.ClickException(f"cannot {doing} {where}: {reason}") from None
+
+
+def refuse_links(preset: Path, *links: str | None) -> None:
+    if any(links):
+        raise click.UsageError(
+            f"{preset} is a preset, from its base to its flange: --tip and --base are for URDF files."
+        )
+
+
+def read_arm(arm: Path, tip: str | None, base: str | None, limits: JointLimits | None = None) -> SerialArm:
+    """The arm of a preset or of a URDF file; the limits replace its own bounds."""
+    if str(arm) in PRESETS:
+        refuse_links(arm, tip, base)
+        preset = SerialArm.preset(str(arm))
+        return replace(preset, joints=limited(preset.joints, limits))
+    if tip is None:
+        raise click.UsageError("a URDF file needs --tip LINK.")
+    with file_errors("read", arm):
+        return SerialArm.from_urdf(arm, tip, base, limits=limits)
 
 
 def make_folder(out: Path) -> None:

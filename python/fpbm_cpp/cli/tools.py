@@ -13,9 +13,9 @@ import numpy as np
 from click.shell_completion import get_completion_class
 
 from .._core import PRESETS, ROBOT_PRESETS, __version__
-from ..arms import SerialArm
 from ..capsule import Capsule
 from ..clearance import Clearance
+from ..files import write_whole
 from ..io.header import SCALARS
 from ..job import Motion, prepare
 from ..job.sections import Table
@@ -28,7 +28,7 @@ from ..robots import Robot
 from ..schemes import SCHEMES
 from ..urdf.capsules import capsules_of
 from ..worst import measure
-from .plain import OUT, PLACE, WIDTH, Plain, file_errors
+from .plain import OUT, PLACE, WIDTH, Plain, file_errors, read_arm, refuse_links
 from .request import limit_options
 
 EVALUATIONS = 4000  # Evaluations of a scheme by RK4 on a path of 1 s at 1 kHz.
@@ -162,26 +162,23 @@ def export_header(
     links of the file. A program with the header reads no file. The options for limits replace bounds of the file or
     the preset: URDF files have no bounds on acceleration.
     """
-    from ..files import write_whole
     from ..io.header import export_header, export_tree, namespace_of
 
     to_stdout = str(out) == "-"
+    is_robot = str(arm) in ROBOT_PRESETS or (str(arm) not in PRESETS and len(tip) != 1)
+    if is_robot and capsules:
+        raise click.UsageError("--capsules are for an arm only: give one --tip.")
     try:
         name = name or namespace_of((arm if to_stdout else out).stem)
         given = {key.removeprefix("limits__"): value for key, value in bounds.items() if value is not None}
         limits = JointLimits(**given) if given else None
-        if str(arm) in ROBOT_PRESETS or (str(arm) not in PRESETS and len(tip) != 1):
-            if capsules:
-                raise click.UsageError("--capsules are for an arm only: give one --tip.")
-            robot, source = _robot(arm, tip, base, limits)
-            source += _changed(given)
-            header = export_tree(robot, name=name, source=source, scalar=scalar)
+        how: dict[str, Any] = {"name": name, "source": _source(arm, tip, base, given), "scalar": scalar}
+        if is_robot:
+            header = export_tree(_robot(arm, tip, base, limits), **how)
         else:
-            exported, shapes, source = _arm(arm, tip, base, capsules, limits)
-            source += _changed(given)
-            header = export_header(
-                exported.joints, exported.tip, name=name, source=source, capsules=shapes, scalar=scalar
-            )
+            exported = read_arm(arm, tip[0] if tip else None, base, limits)
+            shapes = _capsules(arm, tip, base, limits) if capsules else None
+            header = export_header(exported.joints, exported.tip, capsules=shapes, **how)
     except ValueError as error:
         raise click.ClickException(str(error)) from None
     if to_stdout:
@@ -194,56 +191,34 @@ def export_header(
 export_header.params += limit_options()
 
 
-def _changed(limits: Mapping[str, Any]) -> str:
-    """Changed limits, for a comment."""
-    said = ((key, limits[key]) for key in parameters(JointLimits) if key in limits)
-    return "".join(f", --limit-{key.replace('_', '-')} {_text(value)}" for key, value in said)
+def _source(place: Path, tips: Sequence[str], base: str | None, limits: Mapping[str, Any]) -> str:
+    """Source of the joints, for a comment."""
+    said = [f"preset {place}" if str(place) in (*PRESETS, *ROBOT_PRESETS) else place.name]
+    said += [f"base {base}"] if base else []
+    said += [f"tip{'s' * (len(tips) > 1)} {', '.join(tips)}"] if tips else []
+    for key in parameters(JointLimits):
+        if key in limits:
+            said.append(f"--limit-{key.replace('_', '-')} {','.join(f'{x:g}' for x in np.ravel(limits[key]))}")
+    return ", ".join(said)
 
 
-def _text(value: Any) -> str:
-    return ",".join(f"{number:g}" for number in np.ravel(value))
-
-
-def _arm(
-    arm: Path, tip: Sequence[str], base: str | None, capsules: bool, limits: JointLimits | None
-) -> tuple[SerialArm, Sequence[Capsule] | None, str]:
-    """The arm of a preset or a file, its capsules, and its source for a comment."""
+def _capsules(arm: Path, tip: Sequence[str], base: str | None, limits: JointLimits | None) -> Sequence[Capsule]:
     if str(arm) in PRESETS:
-        _require_no_links(arm, tip, base)
-        preset = SerialArm.preset(str(arm))
-        changed = replace(preset, joints=limited(preset.joints, limits))
-        return changed, Clearance.preset(str(arm)).capsules if capsules else None, f"preset {arm}"
+        return Clearance.preset(str(arm)).capsules
     with file_errors("read", arm):
-        read = SerialArm.from_urdf(arm, tip[0], base, limits=limits)
-        shapes = capsules_of(arm, tip[0], base, limits=limits) if capsules else None
-    return read, shapes, _said(arm, base, tip)
+        return capsules_of(arm, tip[0], base, limits=limits)
 
 
-def _robot(urdf: Path, tips: Sequence[str], base: str | None, limits: JointLimits | None) -> tuple[Robot, str]:
+def _robot(urdf: Path, tips: Sequence[str], base: str | None, limits: JointLimits | None) -> Robot:
     """The robot of a preset or a file; the frames are the tips, by default all links."""
     if str(urdf) in ROBOT_PRESETS:
-        _require_no_links(urdf, tips, base)
+        refuse_links(urdf, *tips, base)
         robot = Robot.preset(str(urdf))
         changed = limited([each.joint for each in robot.joints], limits)
-        joints = [replace(each, joint=joint) for each, joint in zip(robot.joints, changed)]
-        return replace(robot, joints=joints), f"preset {urdf}"
+        return replace(robot, joints=[replace(each, joint=joint) for each, joint in zip(robot.joints, changed)])
     with file_errors("read", urdf):
         robot = Robot.from_urdf(urdf, base=base, tips=tips or None, limits=limits)
-    frames = [frame for frame in robot.named_frames if not tips or frame.name in tips]
-    return replace(robot, named_frames=frames), _said(urdf, base, tips)
-
-
-def _require_no_links(preset: Path, tip: Sequence[str], base: str | None) -> None:
-    if tip or base:
-        raise click.UsageError(
-            f"{preset} is a preset, from its base to its flange: --tip and --base are for URDF files."
-        )
-
-
-def _said(urdf: Path, base: str | None, tips: Sequence[str]) -> str:
-    """Source of the joints, for a comment."""
-    ends = [f"tip{'s' * (len(tips) > 1)} {', '.join(tips)}"] if tips else []
-    return ", ".join([urdf.name, *([f"base {base}"] if base else []), *ends])
+    return replace(robot, named_frames=[frame for frame in robot.named_frames if not tips or frame.name in tips])
 
 
 @click.command(

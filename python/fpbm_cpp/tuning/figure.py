@@ -11,13 +11,11 @@ from ..plot.theme import DARK, LIGHT, OKABE_ITO, Theme, dress, sheet
 # Without matplotlib, the line before raises ImportError with the extra to install.
 from matplotlib.figure import Figure  # isort: skip
 
-from .trials import Trials, TuningData
-
 SIZE = 12.6, 4.25  # [in]
 BEST = OKABE_ITO[5]
 
 
-def plot_tuning(tuning: TuningData, *, dark: bool = False) -> Figure:
+def plot_tuning(tuning: Any, *, dark: bool = False) -> Figure:
     """The Pareto front with best and baseline, the change of the objective per step, and the best value so far."""
     theme = DARK if dark else LIGHT
     title = f"{tuning.objective} of {tuning.arm} along {tuning.path!r}"
@@ -30,7 +28,7 @@ def plot_tuning(tuning: TuningData, *, dark: bool = False) -> Figure:
     return figure
 
 
-def _front(axes: Any, tuning: TuningData, theme: Theme) -> None:
+def _front(axes: Any, tuning: Any, theme: Theme) -> None:
     trials, front = tuning.trials, tuning.front
     best, baseline = trials[[trials.best()]], trials[:1]
     axes.plot(*_pair(trials[trials.feasible]), ".", color=theme.soft, alpha=0.6, mew=0, ms=5, label="tried")
@@ -45,7 +43,7 @@ def _front(axes: Any, tuning: TuningData, theme: Theme) -> None:
     _legend(axes, theme)
 
 
-def _sensitivity(axes: Any, tuning: TuningData, theme: Theme) -> None:
+def _sensitivity(axes: Any, tuning: Any, theme: Theme) -> None:
     names = list(tuning.sensitivity)
     for side, label in ((0, "−10 % (alpha −0.05)"), (1, "+10 % (alpha +0.05)")):
         steps = np.array([tuning.sensitivity[name][side] for name in names])
@@ -62,7 +60,7 @@ def _sensitivity(axes: Any, tuning: TuningData, theme: Theme) -> None:
         _legend(axes, theme)
 
 
-def _convergence(axes: Any, tuning: TuningData, theme: Theme) -> None:
+def _convergence(axes: Any, tuning: Any, theme: Theme) -> None:
     best = np.fmin.accumulate(tuning.trials.scores())
     axes.plot(np.arange(1, len(best) + 1), best, drawstyle="steps-post", color=theme.lines[0], label="best so far")
     if np.isfinite(tuning.baseline_value):
@@ -78,9 +76,10 @@ def _legend(axes: Any, theme: Theme) -> None:
     axes.legend(**place, fontsize=9, columnspacing=1.2, handlelength=1.6, labelcolor=theme.ink)
 
 
-def _pair(trials: Trials) -> Array:
+def _pair(trials: Any) -> Array:
     return np.array([trials.peak_velocity, trials.peak_acceleration])
 
 
-def _label(tuning: TuningData) -> str:
-    return tuning.objective.replace("_", " ") + (f" [{tuning.unit}]" if tuning.unit else "")
+def _label(tuning: Any) -> str:
+    unit = f" [{tuning.unit}]" if tuning.unit else ""
+    return f"{tuning.objective.replace('_', ' ')}{unit}"

@@ -16,9 +16,8 @@ from ..motion.sweeping import Progress, Sweep, reporting, sweep
 from ..parameter import Parameter
 from ..schemes import FPBM
 from ..tasks import Stack
-from .result import TuneInterrupted, Tuning
 from .search import Space, front, least, numbers, require_cmaes
-from .trials import Trials, joined, sensitivity
+from .trials import Trials, TuneInterrupted, Tuning, joined, sensitivity
 
 OfRun = Callable[[Run], float]
 

@@ -1,8 +1,8 @@
 """Pages in the browser, which need the extra 'view': a motion, and an arm that follows a handle.
 
 On the viewer's page, the user selects a scheme and a time (controls). The viewer repeats the motion; scene and readout
-draw the motion. On the servo's page, the user drags a target (handle). The loop runs ticks in real time; scene and live
-draw the ticks. All pages draw the shapes of the clearance (shapes).
+draw the motion. On the servo's page, the user drags a target (handle). The loop runs ticks in real time;
+live_scene and readout draw the ticks. All pages draw the shapes of the clearance (shapes).
 """
 
 import os

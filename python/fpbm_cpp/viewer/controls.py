@@ -16,7 +16,6 @@ from ..robots import Robot
 from ..schemes import SCHEMES, Scheme
 from ..skeleton import joint_labels
 
-RATE = 30.0  # Pictures per second.
 SPEEDS = {"⅒ ×": 0.1, "¼ ×": 0.25, "½ ×": 0.5, "1 ×": 1.0, "2 ×": 2.0, "5 ×": 5.0}
 KINDS = {kind.__name__: kind for kind in SCHEMES.values()}
 GAINS = ("k1", "k2", "k")
@@ -151,9 +150,7 @@ class Player:
         self._button.on_click(lambda _: self.pause() if self.playing else self.play())
         self._lock = threading.RLock()  # Acquired before any lock in `moved`.
         self.playing: bool = False
-        self._closed = threading.Event()
-        self._clock = threading.Thread(target=self._tick, name="fpbm_cpp viewer", daemon=True)
-        self._clock.start()
+        self._last = time.perf_counter()
 
     @property
     def time(self) -> float:
@@ -176,28 +173,20 @@ class Player:
             self.playing = False
         self._button.label, self._button.icon = "play", Icon.PLAYER_PLAY
 
-    def close(self) -> None:
-        self._closed.set()
-        self._clock.join()
-
     def _on_slider(self, event: GuiEvent[Any]) -> None:
         if event.client is not None:
             self._time = min(float(self._slider.value), self.end)
             self._moved(self._time)
 
-    def _tick(self) -> None:
-        last = time.perf_counter()
-        while not self._closed.wait(1.0 / RATE):
-            now = time.perf_counter()
-            self._advance(SPEEDS[self._speed.value] * (now - last))
-            last = now
-
-    def _advance(self, seconds: float) -> None:
+    def advance(self) -> None:
+        """Show the present time of the clock."""
+        now = time.perf_counter()
+        passed, self._last = SPEEDS[self._speed.value] * (now - self._last), now
         with self._lock:
             if not self.playing:
                 return
             if self._time < self.end:
-                self.time = self._time + seconds
+                self.time = self._time + passed
             elif self._loop.value:
                 self.time = 0.0
             else:

@@ -7,6 +7,7 @@ import numpy as np
 from .._core import rotation, rotation_vector
 from .._types import Array
 from ..tasks import POSITION, ROTATION, AxisTask, RowsTask, Task
+from ..urdf.chain import frame_at
 
 
 def in_space(points: Array) -> Array:
@@ -17,12 +18,10 @@ def in_space(points: Array) -> Array:
 def frame_of(task: Task, x: Array) -> Array:
     """Frame of a task's point, shape (4, 4): z is the direction of an axis; undetermined coordinates are 0."""
     if task.kind == "position":
-        return _frame(np.eye(3), x)
-    if task.kind == "orientation":
-        return _frame(x, np.zeros(3))
-    if task.kind == "axis":
-        return _frame(z_to(x), np.zeros(3))
-    return x.copy() if x.shape == (4, 4) else _frame(rotation([0.0, 0.0, x[2]]), x[:2])
+        return frame_at(in_space(x))
+    if task.kind in ("orientation", "axis"):
+        return frame_at(R=x if task.kind == "orientation" else z_to(x))
+    return x.copy() if x.shape == (4, 4) else frame_at(in_space(x[:2]), rotation([0.0, 0.0, x[2]]))
 
 
 def point_of(task: Task, frame: Array, shape: tuple[int, ...]) -> Array:
@@ -61,9 +60,3 @@ def z_to(direction: Array) -> Array:
     sine = float(np.hypot(x, y))
     axis = np.array([-y, x, 0.0]) / sine if sine > 1e-300 else np.array([1.0, 0.0, 0.0])
     return np.asarray(rotation(float(np.arctan2(sine, z)) * axis))
-
-
-def _frame(R: Array, p: Array) -> Array:
-    frame = np.eye(4)
-    frame[: len(R), : len(R)], frame[: len(p), 3] = R, p
-    return frame

@@ -39,13 +39,15 @@ class Handle:
         at_tip = task.frame == "tip" and task.offset is None
         look = {"axes_length": 0.4 * size, "axes_radius": 0.02 * size, "visible": not at_tip}  # The tip has axes.
         self._frame = scene.add_frame(f"/frames/{index}", **look)
+        along = self._held > 0.0 if task.kind == "position" else np.ones(3, dtype=bool)
+        active = bool(along[0]), bool(along[1]), bool(along[2]) and not planar
         # A separate node follows the frame, because a handle whose position is set during a rotation jumps.
         self._carrier = scene.add_frame(f"/handles/{index}", show_axes=False)
         self._gizmo = scene.add_transform_controls(
             f"/handles/{index}/gizmo",
             scale=size,
             line_width=3.0,
-            active_axes=self._active(planar),
+            active_axes=active,
             disable_axes=bool(self.axes),
             disable_sliders=bool(self.axes),
             disable_rotations=not self.axes and not selected(task, ROTATION).any(),
@@ -97,8 +99,3 @@ class Handle:
             now, target = (p + self.size * R[:3, axis] for R in (frame, SO3(self._gizmo.wxyz).as_matrix()))
             lines += [(p, now), (now, target)]
         return np.array(lines or [(p, self.position)])
-
-    def _active(self, planar: bool) -> tuple[bool, bool, bool]:
-        """Axes of translation or rotation of the handle."""
-        x, y, z = self._held > 0.0 if self.task.kind == "position" else (True, True, True)
-        return bool(x), bool(y), bool(z) and not planar

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from .._core import Status, TargetFilter, Tick, Tracker
 from .._types import Array
 from ..arms import Arm
-from ..bounds import Bound, bounds_of, clearance_among, task_bounds_among
+from ..bounds import Bound, bounds_of, clearance_among
 from ..clearance import Clearance
 from ..joints import JointLimits, limits_of
 from ..robots import Robot
@@ -22,13 +22,58 @@ from ..schemes import Scheme
 from ..skeleton import frames_of, length
 from ..tasks import Stack, Task
 from .obstacles import Obstacles
-from .strip import Strip
 from .targets import Targets
 
+SECONDS = 10.0  # Time of the strip.
+POINTS = 200  # Points of a curve of the strip.
 MOST = 0.1  # Largest simulated time per call [s]; the remaining elapsed time is dropped.
 POSTURES = 64  # Number of postures from which change_posture() selects one.
 FAR = 0.5  # Least difference of a joint in another posture [rad or m].
 SAID = 0.25  # status is the worst status of the last SAID seconds, because a tick is too short to read.
+
+
+class Strip:
+    """Speed, acceleration and jerk of the joint closest to its bound, relative to this bound, and the task scale.
+
+    shares has a row for each quantity and a column for each tick of the last ten seconds, shape (4, N); 0 without a
+    bound. A stack has a scale for each level, shape (3 + levels, N). The jerk of a tick is the difference of its mean
+    acceleration from the mean acceleration of the previous tick, divided by the length of a tick.
+    """
+
+    def __init__(self, limits: JointLimits, dt: float, levels: int = 1) -> None:
+        self._dt, self._count = dt, 0
+        self._bounds = np.array([limits.velocity, limits.acceleration, limits.jerk], dtype=float)
+        self._before = np.zeros(len(limits.velocity))
+        self._width = max(round(SECONDS / dt / POINTS), 1)
+        self.shares: Array = np.empty((3 + levels, 0))
+
+    def add(self, ticks: Sequence[Tick]) -> None:
+        """Add consecutive ticks, at least one."""
+        qd, qdd = np.array([tick.qd for tick in ticks]), np.array([tick.qdd for tick in ticks])
+        jerk = np.diff(qdd, axis=0, prepend=self._before[None]) / self._dt
+        shares = [(np.abs(each) / bound).max(axis=1) for each, bound in zip((qd, qdd, jerk), self._bounds)]
+        scales = np.array([tick.scale if tick.scales is None else tick.scales for tick in ticks])
+        new = np.vstack([*shares, scales.reshape(len(ticks), -1).T])
+        self._before, self._count = qdd[-1], self._count + len(ticks)
+        self.shares = np.hstack([self.shares, new])[:, -(POINTS + 1) * self._width :]
+
+    @property
+    def bounded(self) -> tuple[bool, ...]:
+        """Whether any joint has a bound on speed, acceleration, jerk."""
+        return tuple(np.isfinite(self._bounds).any(axis=1).tolist())
+
+    def curves(self) -> tuple[Array, Array]:
+        """Times [s], shape (POINTS,), and the worst of the interval that ends at each time, shape (3 + levels, POINTS).
+
+        An interval always has the same ticks, so a peak keeps its height while the chart scrolls. NaN before the start.
+        """
+        end = self.shares.shape[1] - self._count % self._width
+        there = self.shares[:, :end][:, -POINTS * self._width :]
+        there = np.pad(there, [(0, 0), (POINTS * self._width - there.shape[1], 0)], constant_values=np.nan)
+        stretches = there.reshape(-1, POINTS, self._width)
+        worst = np.vstack([stretches[:3].max(axis=2), stretches[3:].min(axis=2)])
+        times: Array = (self._count // self._width + np.arange(1.0 - POINTS, 1.0)) * self._width * self._dt
+        return times, worst
 
 
 class ServoLoop:
@@ -40,9 +85,7 @@ class ServoLoop:
     A stack replaces task. Each position and pose of the stack has a filter; targets of other tasks are references
     without a filter. The first target of a task is its own x or q, or its start.
 
-    targets is a filter with its own bounds, or for a stack, a dictionary of filters by name. The default bounds depend
-    on the length L of the arm: L per second, 5 L/s^2 and 100 L/s^3; 2 rad/s, 10 rad/s^2 and 200 rad/s^3. All other
-    parameters are as for Tracker.
+    targets and the default filters are as for servo(), all other parameters as for Tracker.
 
     Raises ValueError as Tracker does, and if a filter is for another task or tick.
     """
@@ -63,16 +106,18 @@ class ServoLoop:
     ) -> None:
         self.arm, self.stack, self.dt = arm, stack, dt
         self.limits = limits_of(arm, limits) or arm.limits
-        self._task, self._scheme, self._clock, self._lock = task, scheme, clock, threading.RLock()
+        self._how: dict[str, Any] = {"task": task, "stack": stack, "limits": self.limits}
+        self._scheme, self._clock, self._lock = scheme, clock, threading.RLock()
         self._q0 = np.array(q0, dtype=float)
         bounds = bounds_of(bounds)
-        self._obstacles, self.task_bounds = Obstacles(clearance_among(bounds), dt), task_bounds_among(bounds)
+        self._obstacles = Obstacles(clearance_among(bounds), dt)
         self._others = tuple(each for each in bounds if not isinstance(each, Clearance))
         self._tracker = self._new_tracker(scheme, self._q0)  # Rejects an invalid task or stack.
         self._targets = Targets(task, stack, self._tracker.tip, targets, length(arm, self._q0), dt)
+        self.tasks: Sequence[Task] = self._targets.tasks
         self._tracker.tick(self._targets.references)  # Rejects an invalid filter.
         self._said: deque[Status] = deque(maxlen=max(round(SAID / dt), 1))
-        self._tick: Tick | None = None
+        self.tick: Tick | None = None  # The last tick.
         self._seen: list[Array] = []  # Postures before each change.
         self._last: float = 0.0  # Time of the last ticks.
         self.restart()
@@ -84,7 +129,7 @@ class ServoLoop:
         """
         with self._lock:
             now = self._clock()
-            return self._targets.of(task).push(x, now, self._stamp(now))
+            return self._targets.push(task, x, now, self._stamp(now))
 
     def advance(self) -> list[Tick]:
         """Run the ticks that are due."""
@@ -95,10 +140,13 @@ class ServoLoop:
             self._last = now
             due = int(self._owed / self.dt)
             self._owed -= due * self.dt
-            self._time += due * self.dt
-            ticks = [self._one_tick() for _ in range(due)]
+            self.time += due * self.dt
+            ticks = []
+            for _ in range(due):
+                self._obstacles.step(self._tracker)
+                ticks.append(self._tracker.tick(self._targets.references))
             if ticks:
-                self._tick = ticks[-1]
+                self.tick = ticks[-1]
                 self._said.extend(tick.status for tick in ticks)
                 self.strip.add(ticks)
             return ticks
@@ -111,13 +159,13 @@ class ServoLoop:
     def stop(self) -> None:
         """Bring every joint to rest as fast as the limits allow."""
         with self._lock:
-            self._stopped = True
+            self.stopped = True
             self._tracker.stop()
 
     def resume(self) -> None:
         """Follow the target again."""
         with self._lock:
-            self._stopped = False
+            self.stopped = False
             self._tracker.resume()
 
     def restart(self) -> None:
@@ -125,7 +173,15 @@ class ServoLoop:
         with self._lock:
             self._obstacles.restart()
             self._tracker = self._new_tracker(self._scheme, self._q0)
-            self._begin()
+            self.stopped = False
+            self.tick = None
+            self._seen = []
+            self._said.clear()
+            self.strip: Strip = Strip(self.limits, self.dt, 1 if self.stack is None else len(self.stack.levels))
+            self.time: float = 0.0  # Simulated time [s].
+            self._owed: float = 0.0  # Elapsed time that no tick has simulated [s], less than a tick.
+            self._last = self._clock()
+            self._targets.restart(self._tracker.tip, self._last)
 
     def change_posture(self) -> bool:
         """Put the arm at rest into another posture with the same points of all tasks; the nearest that is new.
@@ -134,8 +190,7 @@ class ServoLoop:
         """
         with self._lock:
             points, here = self._tracker.tip, self._tracker.q
-            how: dict[str, Any] = {"task": self._task, "stack": self.stack, "limits": self.limits}
-            found = self.arm.inverse_all(points, here, POSTURES, bounds=self._bounds, **how)
+            found = self.arm.inverse_all(points, here, POSTURES, bounds=self.bounds, **self._how)
             far = [each.q for each in found if self._is_far(each.q, [here])]
             unseen = [q for q in far if self._is_far(q, self._seen)]
             if not far:
@@ -143,7 +198,7 @@ class ServoLoop:
             self._seen = [*self._seen, here] if unseen else [here]
             self._tracker = self._new_tracker(self._scheme, (unseen or far)[0])
             self._said.clear()
-            if self._stopped:
+            if self.stopped:
                 self._tracker.stop()
             return True
 
@@ -158,13 +213,8 @@ class ServoLoop:
             now = self._tracker
             self._tracker = self._new_tracker(scheme, now.q, qd0=now.qd, qdd0=now.qdd)
             self._scheme = scheme
-            if self._stopped:
+            if self.stopped:
                 self._tracker.stop()
-
-    @property
-    def tasks(self) -> Sequence[Task]:
-        """The tasks of the stack, or the tip's only task."""
-        return self._targets.tasks
 
     @property
     def clearance(self) -> Clearance | None:
@@ -188,21 +238,11 @@ class ServoLoop:
 
     def target_of(self, task: str) -> Array:
         """The newest target of the task of that name."""
-        return self._targets.of(task).x.copy()
+        return self._targets.of(task)
 
     def frame(self, task: str) -> Array:
         """The frame of the task of that name, shape (4, 4); for an axis, z is its direction."""
         return frames_of(self.arm, self.q, "tip") if self.stack is None else self._tracker.frame(task)
-
-    @property
-    def time(self) -> float:
-        """Simulated time [s]."""
-        return self._time
-
-    @property
-    def tick(self) -> Tick | None:
-        """The last tick; None before the first."""
-        return self._tick
 
     @property
     def status(self) -> Status:
@@ -211,30 +251,12 @@ class ServoLoop:
             return max(self._said, key=lambda status: status.value, default=Status.OK)
 
     @property
-    def _bounds(self) -> tuple[Bound, ...]:
+    def bounds(self) -> tuple[Bound, ...]:
         """The bounds, with the obstacles at their present places."""
         return self._others if self.clearance is None else (self.clearance, *self._others)
 
-    @property
-    def stopped(self) -> bool:
-        """Whether stop() was called last, not resume()."""
-        return self._stopped
-
-    def _new_tracker(
-        self, scheme: Scheme, q0: Array, *, qd0: Array | None = None, qdd0: Array | None = None
-    ) -> Tracker:
-        return Tracker(
-            self.arm,
-            scheme,
-            q0,
-            task=self._task,
-            stack=self.stack,
-            dt=self.dt,
-            limits=self.limits,
-            bounds=self._bounds,
-            qd0=qd0,
-            qdd0=qdd0,
-        )
+    def _new_tracker(self, scheme: Scheme, q0: Array, **state: Any) -> Tracker:
+        return Tracker(self.arm, scheme, q0, dt=self.dt, bounds=self.bounds, **self._how, **state)
 
     def _is_far(self, q: Array, others: Sequence[Array]) -> bool:
         """Whether a posture differs from others by more than whole turns of joints."""
@@ -246,22 +268,6 @@ class ServoLoop:
                 return False
         return True
 
-    def _one_tick(self) -> Tick:
-        self._obstacles.step(self._tracker)
-        return self._tracker.tick(self._targets.references)
-
     def _stamp(self, now: float) -> float:
         """Time on the clock of the ticks, without the time that a slow machine drops."""
-        return self._time + self._owed + min(now - self._last, MOST)
-
-    def _begin(self) -> None:
-        self._stopped = False
-        self._tick = None
-        self._seen = []
-        self._said.clear()
-        levels = 1 if self.stack is None else len(self.stack.levels)
-        self.strip: Strip = Strip(self.limits, self.dt, levels)
-        self._time: float = 0.0
-        self._owed: float = 0.0  # Elapsed time that no tick has simulated [s], less than a tick.
-        self._last = self._clock()
-        self._targets.restart(self._tracker.tip, self._last)
+        return self.time + self._owed + min(now - self._last, MOST)

@@ -10,7 +10,7 @@ from .._types import Array
 from ..capsule import Capsule
 from ..clearance import Clearance
 from ..errors import wrong
-from ..obstacle import Cuboid, HalfSpace, Obstacle
+from ..obstacle import Cuboid, Obstacle
 
 SPEED = 0.3  # Largest velocity toward the goal [m/s].
 ACCELERATION = 1.0  # Largest acceleration [m/s²].
@@ -30,16 +30,15 @@ class Obstacles:
     @property
     def clearance(self) -> Clearance | None:
         """The clearance, with its obstacles at their present places."""
-        if self._first is None or not self._moved:
+        if self._first is None or not self._moves:
             return self._first
-        return replace(self._first, obstacles=[self._moved.get(each.name, each) for each in self._first.obstacles])
+        moved = {name: shifted(self._given[name], displacement) for name, (displacement, _) in self._moves.items()}
+        return replace(self._first, obstacles=[moved.get(each.name, each) for each in self._first.obstacles])
 
     def restart(self) -> None:
         """Move all obstacles to their given places."""
         self._goals: dict[str, Array] = {}
-        self._displacements: dict[str, Array] = {}
-        self._velocities: dict[str, Array] = {}
-        self._moved: dict[str, Obstacle] = {}
+        self._moves: dict[str, tuple[Array, Array]] = {}  # Displacement [m] and velocity [m/s].
 
     def drag(self, name: str, displacement: Array) -> None:
         """Move a capsule or a box to this displacement from its given place [m], within SPEED and ACCELERATION.
@@ -54,7 +53,7 @@ class Obstacles:
     def step(self, tracker: Tracker) -> None:
         """Move the obstacles that have a goal, by one tick."""
         for name, goal in [*self._goals.items()]:
-            before, velocity = self._displacements.get(name, np.zeros(3)), self._velocities.get(name, np.zeros(3))
+            before, velocity = self._moves.get(name, (np.zeros(3), np.zeros(3)))
             left = goal - before
             distance, change = float(np.linalg.norm(left)), ACCELERATION * self._dt
             if distance <= change * self._dt and np.linalg.norm(velocity) <= 2 * change:
@@ -66,13 +65,8 @@ class Obstacles:
                 turn = desired - velocity
                 velocity = velocity + turn * min(1.0, change / max(float(np.linalg.norm(turn)), math.ulp(1.0)))
                 displacement = before + self._dt * velocity
-            self._displacements[name], self._velocities[name] = displacement, velocity
-            self._moved[name] = shifted(self._given[name], displacement)
-            tracker.move(name, self._moved[name], velocity)
-
-
-def can_be_dragged(shape: Obstacle) -> bool:
-    return not isinstance(shape, HalfSpace)
+            self._moves[name] = displacement, velocity
+            tracker.move(name, shifted(self._given[name], displacement), velocity)
 
 
 def shifted(shape: Obstacle, displacement: Array) -> Obstacle:

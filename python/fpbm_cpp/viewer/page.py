@@ -1,12 +1,14 @@
-"""A page in the browser: its server, its address, and its end."""
+"""A page in the browser: its server, its address, its clock, and its end."""
 
 from __future__ import annotations
 
 import atexit
 import errno
 import socket
+import threading
 import time
-from collections.abc import Iterator
+import webbrowser
+from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, suppress
 from typing import TypeVar
 
@@ -14,6 +16,8 @@ import rich
 import viser
 
 P = TypeVar("P", bound="Page")
+
+RATE = 30.0  # Pictures per second.
 
 
 class Page(AbstractContextManager["Page"]):
@@ -24,6 +28,8 @@ class Page(AbstractContextManager["Page"]):
 
     def __init__(self, host: str, port: int) -> None:
         _require_free(host, port)
+        self._lock, self._closed = threading.RLock(), threading.Event()
+        self._clock: threading.Thread | None = None
         with _quiet():
             self._server = viser.ViserServer(host, port, label="fpbm_cpp", verbose=False)
         atexit.register(self.close)  # Runs before viser's own exit handler, which prints.
@@ -32,6 +38,18 @@ class Page(AbstractContextManager["Page"]):
         # The share button would publish the page through a third-party server.
         self._server.gui.configure_theme(control_width="large", show_logo=False, show_share_button=False)
         self._server.gui.main_panel.dock_right()
+
+    def _start(self, step: Callable[[], None], open_browser: bool) -> None:
+        """Call a function RATE times per second until close(), from another thread. Open the page on request."""
+
+        def run() -> None:
+            while not self._closed.wait(1.0 / RATE):
+                step()
+
+        self._clock = threading.Thread(target=run, name="fpbm_cpp page", daemon=True)
+        self._clock.start()
+        if open_browser:
+            webbrowser.open(self.url)
 
     def wait(self) -> None:
         """Print the address, serve until Ctrl-C, then close."""
@@ -43,6 +61,9 @@ class Page(AbstractContextManager["Page"]):
     def close(self) -> None:
         """Stop serving. A second call has no effect."""
         atexit.unregister(self.close)
+        self._closed.set()
+        if self._clock is not None:
+            self._clock.join()
         with _quiet():
             self._server.stop()
 

@@ -1,24 +1,26 @@
-"""The scene of a run, and its arm."""
+"""The scene of an arm, and the scene of a run."""
 
 from __future__ import annotations
 
 import logging
 import os
 import warnings
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import yourdfpy
-from viser import ClientHandle, FrameHandle, SceneApi, SceneNodeHandle, ViserServer
+from viser import ClientHandle, LineSegmentsHandle, SceneApi, SceneNodeHandle, ViserServer
 from viser.extras import ViserUrdf
 from viser.transforms import SO3
 
-from .._core import rotation_vector
+from .._core import Nearest, rotation_vector
 from .._types import Array
 from ..arms import Arm, PlanarArm
-from ..bounds import task_bounds_among
+from ..bounds import Bound, clearance_among, task_bounds_among
+from ..clearance import Clearance
 from ..robots import Robot
 from ..skeleton import joint_points, joints_of, length, link_frames
 from ..urdf.mesh_file import find_mesh
@@ -136,59 +138,71 @@ def _held(urdf: Any, robot: Robot) -> dict[str, float]:
 
 
 class Scene:
+    """An arm on the ground, the axes of its tip, and its bounds. The camera shows the given points."""
+
+    def __init__(
+        self,
+        server: ViserServer,
+        arm: Arm | Robot,
+        q: Array,
+        meshes: Meshes | None,
+        points: Array,
+        bounds: Sequence[Bound],
+    ) -> None:
+        self._server = server
+        self._arm: Links | Meshes
+        if meshes is not None and meshes.found:
+            meshes.show(server)
+            self._arm = meshes
+        else:
+            self._arm = Links(server.scene, arm, q)
+        centre = (np.nanmin(points, axis=0) + np.nanmax(points, axis=0)) / 2
+        self._radius = max(float(np.nanmax(np.linalg.norm(points - centre, axis=1))), 1e-3)
+        _add_ground(server.scene, self._radius, isinstance(arm, PlanarArm))
+        _place_camera(server, centre, self._radius, isinstance(arm, PlanarArm))
+        size = 0.16 * self._radius
+        self._tip = server.scene.add_frame("/tip", axes_length=size, axes_radius=0.06 * size)
+        clearance = clearance_among(bounds)
+        self._shapes = None if clearance is None else Shapes(server.scene, arm, clearance)
+        draw_bounds(server.scene, task_bounds_among(bounds))
+
+    def _add_lines(self, name: str, color: tuple[int, int, int], width: float) -> LineSegmentsHandle:
+        """Lines without points."""
+        nothing = np.zeros((0, 2, 3), dtype=np.float32)
+        return self._server.scene.add_line_segments(name, nothing, color, thickness=width, thickness_units="screen")
+
+    def _pose(self, q: Array, tip: Array, clearance: Clearance | None, nearest: Nearest | None) -> None:
+        """Show a posture, the frame of the tip, shape (4, 4), and the shapes of the clearance."""
+        self._arm.pose(q)
+        self._tip.position, self._tip.wxyz = tip[:3, 3], SO3.from_matrix(tip[:3, :3]).wxyz
+        if self._shapes is not None and clearance is not None:
+            self._shapes.at(clearance, q, nearest)
+
+
+class RunScene(Scene):
     """An arm on its path: show() draws start and target of a run, at() moves the arm to a sample."""
 
-    def __init__(self, server: ViserServer, playback: Playback, meshes: Meshes | None) -> None:
-        run, self._server = playback.run, server
+    def __init__(self, server: ViserServer, playback: Playback, meshes: Meshes | None, bounds: Sequence[Bound]) -> None:
+        run = playback.run
         postures = in_space(joint_points(run.arm, run.q[playback.frames])).reshape(-1, 3)
         points = np.vstack([postures, *(target for _, target in playback.tracks)])
-        self._arm, self._tip, _ = set_up(server, run.arm, run.q[0], meshes, points)
-        clearance = playback.clearance
-        self._shapes = None if clearance is None else Shapes(server.scene, run.arm, clearance)
-        draw_bounds(server.scene, task_bounds_among(run.options.get("bounds") or ()))
-        nothing = np.zeros((0, 2, 3), dtype=np.float32)
-        lines = ("/start", START, 2.0), ("/target", TARGET, 2.0), ("/tip_path", TIP, 5.0)
-        self._start, self._target, self._path = (
-            server.scene.add_line_segments(name, nothing, color, thickness=width, thickness_units="screen")
-            for name, color, width in lines
-        )
+        super().__init__(server, run.arm, run.q[0], meshes, points, bounds)
+        self._start = self._add_lines("/start", START, 2.0)
+        self._target = self._add_lines("/target", TARGET, 2.0)
+        self._path = self._add_lines("/tip_path", TIP, 5.0)
 
     def show(self, playback: Playback) -> None:
         self._playback, run = playback, playback.run
         self._start.points = rods(run.arm, run.q[0]).astype(np.float32)
         targets = [segments(target[playback.frames]) for _, target in playback.tracks]
-        dashed = [target[::2] if len(target) > 50 else target for target in targets]
-        self._target.points = np.concatenate(dashed)
+        self._target.points = np.concatenate([target[::2] if len(target) > 50 else target for target in targets])
 
     def at(self, sample: int) -> None:
         """Move arm and tip to a sample, and draw the path up to this sample; for a stack, the paths of its tasks."""
         playback = self._playback
-        pose = playback.pose(sample)
-        with self._server.atomic():
-            self._arm.pose(playback.run.q[sample])
-            self._tip.position, self._tip.wxyz = pose[:3, 3], SO3.from_matrix(pose[:3, :3]).wxyz
-            passed = [*playback.frames[: playback.frame(sample) + 1], sample]
-            self._path.points = np.concatenate([segments(tip[passed]) for tip, _ in playback.tracks])
-            if self._shapes is not None and playback.clearance is not None:
-                self._shapes.at(playback.clearance, playback.run.q[sample], playback.nearest(sample))
-
-
-def set_up(
-    server: ViserServer, arm: Arm | Robot, q: Array, meshes: Meshes | None, points: Array
-) -> tuple[Links | Meshes, FrameHandle, float]:
-    """The arm on the ground, the axes of its tip, and the radius of the given points, which the camera shows."""
-    shown: Links | Meshes
-    if meshes is not None and meshes.found:
-        meshes.show(server)
-        shown = meshes
-    else:
-        shown = Links(server.scene, arm, q)
-    centre = (np.nanmin(points, axis=0) + np.nanmax(points, axis=0)) / 2
-    radius = max(float(np.nanmax(np.linalg.norm(points - centre, axis=1))), 1e-3)
-    _add_ground(server.scene, radius, isinstance(arm, PlanarArm))
-    _place_camera(server, centre, radius, isinstance(arm, PlanarArm))
-    size = 0.16 * radius
-    return shown, server.scene.add_frame("/tip", axes_length=size, axes_radius=0.06 * size), radius
+        self._pose(playback.run.q[sample], playback.pose(sample), playback.clearance, playback.nearest(sample))
+        passed = [*playback.frames[: playback.frame(sample) + 1], sample]
+        self._path.points = np.concatenate([segments(tip[passed]) for tip, _ in playback.tracks])
 
 
 def segments(points: Array) -> Array:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-import threading
-import webbrowser
 from collections.abc import Mapping
 from typing import Any
 
@@ -17,11 +15,11 @@ from ..arms import Arm
 from ..errors import wrong
 from ..robots import Robot
 from ..schemes import Scheme
-from .controls import RATE, Controls
-from .live import LiveReadout, StripChart
+from .controls import Controls
 from .live_scene import LiveScene
 from .loop import ServoLoop
 from .page import Page
+from .readout import LiveReadout, StripChart
 from .scene import Meshes
 
 
@@ -51,7 +49,6 @@ class Servo(Page):
         meshes = None if urdf is None else Meshes(urdf, arm, self._loop.q)
         super().__init__(host, port)
         gui = self._server.gui
-        self._lock = threading.RLock()
         with self._lock:  # The first events of the page wait until all parts exist.
             self._readout = LiveReadout(gui)
             self._button = gui.add_button("stop", color="red", icon=Icon.HAND_STOP, hint="Stop the arm, or continue")
@@ -64,11 +61,7 @@ class Servo(Page):
             start.on_click(lambda _: self.restart())
             other.on_click(lambda _: self.change_posture())
             self._draw()
-        self._closed = threading.Event()
-        self._clock = threading.Thread(target=self._run, name="fpbm_cpp servo", daemon=True)
-        self._clock.start()
-        if open_browser:
-            webbrowser.open(self.url)
+        self._start(self._step, open_browser)
 
     @property
     def target(self) -> Any:
@@ -147,12 +140,6 @@ class Servo(Page):
             self._scene.restart(self._loop)
             self.resume()
 
-    def close(self) -> None:
-        """Stop serving. A second call has no effect."""
-        self._closed.set()
-        self._clock.join()
-        super().close()
-
     def _on_change(self) -> None:
         """Continue with the scheme that is selected on the page."""
         with self._lock:
@@ -162,10 +149,9 @@ class Servo(Page):
             except ValueError as error:
                 self._readout.refuse(str(error))
 
-    def _run(self) -> None:
-        while not self._closed.wait(1.0 / RATE):
-            self._loop.advance()
-            self._draw()
+    def _step(self) -> None:
+        self._loop.advance()
+        self._draw()
 
     def _draw(self) -> None:
         with self._lock, self._server.atomic():

@@ -15,6 +15,8 @@ from ..tasks import TASKS, PostureTask, Stack, Task
 
 REPEAT = 0.1  # A handle without events is at rest: the target of this handle is repeated after this time [s].
 FILTERED = ("position", "pose")  # Tasks with a filter for targets; targets of other tasks are references.
+# Bounds of default filters.
+ANGULAR = {"angular_velocity": 2.0, "angular_acceleration": 10.0, "angular_jerk": 200.0}
 ROUND_OFF = 1e-8  # Tolerance of the entries of a rotation.
 TIP = "tip"  # Name of the only task without a stack.
 
@@ -29,43 +31,70 @@ class Targets:
     def __init__(self, task: str, stack: Stack | None, tip: Any, given: Any, length: float, dt: float) -> None:
         self._alone = stack is None
         self.tasks: Sequence[Task] = (TASKS[task](name=TIP),) if stack is None else stack.tasks
-        filters = self._filters(given)
-        starts = self._by_name(tip)
+        self._tasks = {each.name: each for each in self.tasks}
+        self._filters = self._given_filters(given)
+        self._x: dict[str, Array] = dict(self._by_name(tip))
+        self._heard = dict.fromkeys(self._x, 0.0)  # Time of each target.
         for each in self.tasks:
-            if each.kind in FILTERED and each.name not in filters:
-                filters[each.name] = usual_filter(each, starts[each.name], length, dt)
-        self._targets = {each.name: Target(each, starts[each.name], filters.get(each.name)) for each in self.tasks}
+            if each.kind in FILTERED and each.name not in self._filters:
+                linear = {"velocity": length, "acceleration": 5.0 * length, "jerk": 100.0 * length}
+                start = self._x[each.name]
+                self._filters[each.name] = TargetFilter(start, **linear, **ANGULAR, task=each.kind, dt=dt)
 
     @property
     def x(self) -> Any:
         """The newest targets [m, rad]."""
-        return self._plain({name: target.x.copy() for name, target in self._targets.items()})
+        return self._plain({name: x.copy() for name, x in self._x.items()})
 
     @property
     def references(self) -> Any:
         """References for a tracker."""
-        return self._plain({name: target.reference for name, target in self._targets.items()})
+        return self._plain({**self._x, **self._filters})
 
-    def of(self, task: str | None) -> Target:
-        """The target of the task of that name. Raises ParameterError."""
-        name = TIP if task is None and self._alone else task
-        if name not in self._targets:
-            raise not_one_of("task", name, self._targets)
-        return self._targets[name]
+    def of(self, task: str) -> Array:
+        """The newest target of the task of that name. Raises ParameterError."""
+        return self._x[self._known(task).name].copy()
 
     def restart(self, tip: Any, now: float) -> None:
         """Restart at rest at the points of the tasks, with the targets of their construction."""
-        starts = self._by_name(tip)
-        for name, target in self._targets.items():
-            target.restart(starts[name], now)
+        self._x = dict(self._by_name(tip))
+        self._heard = dict.fromkeys(self._x, now)
+        for name, task in self._tasks.items():
+            if name in self._filters:
+                self._filters[name].reset(self._x[name])
+            own = getattr(task, "q" if isinstance(task, PostureTask) else "x")
+            if own is not None:
+                self.push(name, own, now, 0.0)
 
     def repeat(self, now: float, stamp: float) -> None:
         """Repeat targets without events, so that the filters detect that these targets are at rest."""
-        for target in self._targets.values():
-            if now - target.heard >= REPEAT:
-                target.push(target.x, now, stamp)
+        for name, heard in self._heard.items():
+            if now - heard >= REPEAT:
+                self.push(name, self._x[name], now, stamp)
 
-    def _filters(self, given: Any) -> dict[str, TargetFilter]:
+    def push(self, name: str | None, x: ArrayLike, now: float, stamp: float) -> bool:
+        """Set a target of a task, with its stamp on the clock of the ticks. Returns whether the target is accepted."""
+        task, x = self._known(name), np.array(x, dtype=float)
+        taken = self._filters[task.name].push(x, stamp) if task.name in self._filters else self._is_sound(task, x)
+        if taken:
+            self._x[task.name], self._heard[task.name] = x, now
+        return taken
+
+    def _known(self, name: str | None) -> Task:
+        name = TIP if name is None and self._alone else name
+        if name not in self._tasks:
+            raise not_one_of("task", name, self._tasks)
+        return self._tasks[name]
+
+    def _is_sound(self, task: Task, x: Array) -> bool:
+        shape = self._x[task.name].shape
+        if x.shape != shape:
+            raise wrong(task.name, x, f" has shape {x.shape}: must have {shape}")
+        if task.kind == "orientation":
+            return bool(np.abs(x @ x.T - np.eye(3)).max() < ROUND_OFF and np.linalg.det(x) > 0.0)
+        return bool(np.isfinite(x).all() and (task.kind != "axis" or x.any()))
+
+    def _given_filters(self, given: Any) -> dict[str, TargetFilter]:
         if given is None or self._alone:
             return {} if given is None else {TIP: given}
         if not isinstance(given, Mapping):
@@ -81,53 +110,3 @@ class Targets:
 
     def _plain(self, by_name: dict[str, Any]) -> Any:
         return by_name[TIP] if self._alone else by_name
-
-
-class Target:
-    """The newest target of a task, and its reference."""
-
-    def __init__(self, task: Task, start: Array, filtered: TargetFilter | None) -> None:
-        self._task, self._filter = task, filtered
-        self.x: Array = start
-        self.heard: float = 0.0  # Time of the target.
-
-    @property
-    def reference(self) -> TargetFilter | Array:
-        return self.x if self._filter is None else self._filter
-
-    def restart(self, start: Array, now: float) -> None:
-        self.x, self.heard = start, now
-        if self._filter is not None:
-            self._filter.reset(start)
-        own = getattr(self._task, "q" if isinstance(self._task, PostureTask) else "x")
-        if own is not None:
-            self.push(own, now, 0.0)
-
-    def push(self, x: ArrayLike, now: float, stamp: float) -> bool:
-        """Set a target, with its stamp on the clock of the ticks. Returns whether the target is accepted."""
-        x = np.array(x, dtype=float)
-        taken = self._is_sound(x) if self._filter is None else self._filter.push(x, stamp)
-        if taken:
-            self.x, self.heard = x, now
-        return taken
-
-    def _is_sound(self, x: Array) -> bool:
-        if x.shape != self.x.shape:
-            raise wrong(self._task.name, x, f" has shape {x.shape}: must have {self.x.shape}")
-        if self._task.kind == "orientation":
-            return bool(np.abs(x @ x.T - np.eye(3)).max() < ROUND_OFF and np.linalg.det(x) > 0.0)
-        return bool(np.isfinite(x).all() and (self._task.kind != "axis" or x.any()))
-
-
-def usual_filter(task: Task, start: Array, length: float, dt: float) -> TargetFilter:
-    return TargetFilter(
-        start,
-        velocity=length,
-        acceleration=5.0 * length,
-        jerk=100.0 * length,
-        angular_velocity=2.0,
-        angular_acceleration=10.0,
-        angular_jerk=200.0,
-        task=task.kind,
-        dt=dt,
-    )

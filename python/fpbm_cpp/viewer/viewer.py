@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-import threading
-import webbrowser
 
 from ..bounds import clearance_among
 from ..motion.run import Run
@@ -14,7 +12,7 @@ from .controls import Controls, Player
 from .page import Page
 from .playback import Playback
 from .readout import Chart, Readout
-from .scene import Meshes, Scene
+from .scene import Meshes, RunScene
 
 
 class Viewer(Page):
@@ -34,26 +32,23 @@ class Viewer(Page):
         port: int = 8080,
         open_browser: bool = False,
     ) -> None:
-        playback = Playback(run, clearance_among(run.options.get("bounds") or ()))
+        self._bounds = run.options.get("bounds") or ()
+        playback = Playback(run, clearance_among(self._bounds))
         meshes = None if urdf is None else Meshes(urdf, run.arm, playback.run.q[0])
         super().__init__(host, port)
         self._first = run
         self._asked: tuple[Scheme, bool] | None = None  # The shown choice; None after a failed choice on the page.
-        self._lock = threading.RLock()
-        gui, duration = (
-            self._server.gui,
-            max(path.duration for path in run.paths.values()) + run.options.get("hold", 0.0),
-        )
+        gui = self._server.gui
+        duration = max(path.duration for path in run.paths.values()) + run.options.get("hold", 0.0)
         with self._lock:  # The first events of the page wait until all parts exist.
             self._readout = Readout(gui)
             self._player = Player(gui, duration, self._draw)
             limits, gains = (run.limits, run.scale is not None), run.stack is None
             self._controls = Controls(gui, run.arm, run.scheme, self._on_change, *limits, gains=gains)
             self._chart = Chart(gui, playback, duration)
-            self._scene = Scene(self._server, playback, meshes)
+            self._scene = RunScene(self._server, playback, meshes, self._bounds)
             self._show(run)
-        if open_browser:
-            webbrowser.open(self.url)
+        self._start(self._player.advance, open_browser)
 
     @property
     def run(self) -> Run:
@@ -89,11 +84,6 @@ class Viewer(Page):
         """Stop the clock."""
         self._player.pause()
 
-    def close(self) -> None:
-        """Stop serving. A second call has no effect."""
-        self._player.close()
-        super().close()
-
     def _on_change(self) -> None:
         """Simulate the scheme that is selected on the page; of several simultaneous requests, the last counts."""
         with self._lock:
@@ -106,7 +96,7 @@ class Viewer(Page):
                 self._readout.refuse(str(error))
 
     def _show(self, run: Run) -> None:
-        playback = Playback(run, clearance_among(self._first.options.get("bounds") or ()))
+        playback = Playback(run, clearance_among(self._bounds))
         with self._lock, self._server.atomic():
             self._asked = run.scheme, self._controls.limited
             self._run, self._playback = run, playback
