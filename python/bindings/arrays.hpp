@@ -72,6 +72,9 @@ class Given : public py::object {
 inline std::string shape_text(const py::array& array) {
   return py::cast<std::string>(py::str(array.attr("shape")));
 }
+inline std::string shape_text(const std::vector<py::ssize_t>& shape) {
+  return py::cast<std::string>(py::str(py::tuple(py::cast(shape))));
+}
 
 /// Number of dimensions of an array or of an object that can be converted; otherwise -1.
 inline int dimensions(const ArrayLike& argument) {
@@ -119,10 +122,7 @@ inline Array result_array(const OptionalOut& out, const std::vector<py::ssize_t>
       return array;
     }
   }
-  std::string text;
-  for (const py::ssize_t each : shape) text += (text.empty() ? "" : ", ") + std::to_string(each);
-  if (shape.size() == 1) text += ",";
-  validation::reject("out", ": must be a writeable, C-contiguous array of float64 of shape (" + text + ")");
+  validation::reject("out", ": must be a writeable, C-contiguous array of float64 of shape " + shape_text(shape));
 }
 
 /// One entry per joint, 1 to kMaxDof entries; the values are not checked.
@@ -130,6 +130,15 @@ inline Vector<Eigen::Dynamic> joint_vector(const ArrayLike& argument, const char
   const auto array = real_array(argument, name, 1);
   validation::require_dof(name, array.size(), 1);
   return Eigen::Map<const Eigen::VectorXd>(array.data(), array.size());
+}
+
+/// One entry per joint, which may be infinite but not NaN.
+inline Vector<Eigen::Dynamic> bound_vector(const ArrayLike& argument, const char* name) {
+  const Vector<Eigen::Dynamic> values = joint_vector(argument, name);
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    if (std::isnan(values(i))) validation::fail(validation::element(name, i), values(i), "a number");
+  }
+  return values;
 }
 
 /// One finite entry per joint of an arm.
@@ -140,14 +149,20 @@ inline Vector<Eigen::Dynamic> joint_vector(const ArrayLike& argument, const char
   return values;
 }
 
-/// A vector of exactly `Size` finite entries.
+/// A vector of exactly `Size` entries.
 template <int Size>
-Vector<Size> fixed_vector(const ArrayLike& argument, const char* name) {
+Vector<Size> any_vector(const ArrayLike& argument, const char* name) {
   const auto array = real_array(argument, name, 1);
   if (array.size() != Size) {
     validation::reject(name, " has " + std::to_string(array.size()) + " entries: must have " + std::to_string(Size));
   }
-  const Vector<Size> result = Eigen::Map<const Vector<Size>>(array.data());
+  return Eigen::Map<const Vector<Size>>(array.data());
+}
+
+/// A vector of exactly `Size` finite entries.
+template <int Size>
+Vector<Size> fixed_vector(const ArrayLike& argument, const char* name) {
+  const auto result = any_vector<Size>(argument, name);
   validation::require_finite(name, result);
   return result;
 }
@@ -163,9 +178,9 @@ inline Vector<3> direction(const ArrayLike& argument, const char* name) {
   return scaled;
 }
 
-/// A matrix of exactly `rows` x `cols` finite entries.
+/// A matrix of exactly `rows` x `cols` entries, which must be finite unless is_any.
 template <typename Result = Eigen::MatrixXd>
-Result matrix(const ArrayLike& argument, const char* name, Eigen::Index rows, Eigen::Index cols) {
+Result matrix(const ArrayLike& argument, const char* name, Eigen::Index rows, Eigen::Index cols, bool is_any = false) {
   const auto array = real_array(argument, name, 2);
   if (array.shape(0) != rows || array.shape(1) != cols) {
     validation::reject(name, ": must have shape (" + std::to_string(rows) + ", " + std::to_string(cols) + "), got " +
@@ -174,7 +189,8 @@ Result matrix(const ArrayLike& argument, const char* name, Eigen::Index rows, Ei
   const Result result = Eigen::Map<const RowMajor>(array.data(), rows, cols);
   for (Eigen::Index i = 0; i < rows; ++i) {
     for (Eigen::Index j = 0; j < cols; ++j) {
-      if (!std::isfinite(result(i, j))) validation::fail(validation::element(name, i, j), result(i, j), "finite");
+      if (!is_any && !std::isfinite(result(i, j)))
+        validation::fail(validation::element(name, i, j), result(i, j), "finite");
     }
   }
   return result;
@@ -192,6 +208,16 @@ Transform<> transform_of(const Eigen::Matrix4d& H, const Name& name) {
 }
 inline Transform<> transform(const ArrayLike& argument, const char* name) {
   return transform_of(matrix<Eigen::Matrix4d>(argument, name, 4, 4), [name] { return validation::Argument(name); });
+}
+
+/// A point of a task space from Space::kSize finite numbers. name() returns the name of the point.
+template <typename Space, typename Name>
+typename Space::template Point<double> point_at(const double* numbers, const Name& name) {
+  if constexpr (std::is_same_v<Space, Pose>) {
+    return transform_of(Eigen::Map<const RowMajor>(numbers, 4, 4), name);
+  } else {
+    return Eigen::Map<const Vector<Space::kSize>>(numbers);
+  }
 }
 
 /// A point of a task space: shape (2,), (3,) or (4, 4).
@@ -214,11 +240,7 @@ inline JointLimits<Eigen::Dynamic> joint_limits(const py::object& limits) {
     if (limits.attr(name).is_none()) {
       validation::reject(validation::Argument("limits.") + name, " is missing: give limits.of(arm)");
     }
-    const Vector<Eigen::Dynamic> values = joint_vector(ArrayLike(py::object(limits.attr(name))), name);
-    for (Eigen::Index i = 0; i < values.size(); ++i) {
-      if (std::isnan(values(i))) validation::fail(validation::element(name, i), values(i), "a number");
-    }
-    return values;
+    return bound_vector(ArrayLike(py::object(limits.attr(name))), name);
   };
   JointLimits<Eigen::Dynamic> result{bound("lower"), bound("upper"), bound("velocity"), bound("acceleration")};
   const auto has = [&](const char* name) { return py::hasattr(limits, name) && !limits.attr(name).is_none(); };
@@ -246,6 +268,13 @@ inline Array array_of(const Transform<>& x) {
   Array result({4, 4});
   Pose::store(x, result.mutable_data());
   return result;
+}
+
+/// Which of n joints have a bit.
+inline py::array_t<bool> array_of(JointBits bits, Eigen::Index n) {
+  py::array_t<bool> joints(n);
+  for (Eigen::Index i = 0; i < n; ++i) joints.mutable_at(i) = ((bits >> i) & 1U) != 0;
+  return joints;
 }
 
 }  // namespace fpbm::bindings

@@ -6,12 +6,14 @@
 #include <vector>
 
 #include "arrays.hpp"
-#include "clearance.hpp"
 #include "fpbm/bound/robot_capsules.hpp"
-#include "read_stack.hpp"
+#include "read.hpp"
 
 namespace fpbm::bindings {
+namespace {
 
+/// The clearance of an arm from an fpbm_cpp.Clearance. Throws std::invalid_argument if the clearance does not fit the
+/// arm.
 Clearance<kDynamic> clearance_of(const Model& model, const py::handle& given) {
   require_class(given, "clearance", "Clearance", "clearance", "a Clearance");
   const auto name = [](const py::handle& shape) { return py::cast<std::string>(field(shape, "name")); };
@@ -30,8 +32,6 @@ Clearance<kDynamic> clearance_of(const Model& model, const py::handle& given) {
   clearance.keep_away({py::cast<double>(field(given, "away_gain")), py::cast<double>(field(given, "away_range"))});
   return clearance;
 }
-
-namespace {
 
 /// Adds an fpbm_cpp.TaskBounds.
 void add_task_bounds(TaskBounds<kDynamic>& walls, SpeedBounds<kDynamic>& speeds, const Model& model,
@@ -59,87 +59,6 @@ void add_task_bounds(TaskBounds<kDynamic>& walls, SpeedBounds<kDynamic>& speeds,
   }
   speeds.keep(speed);
 }
-
-}  // namespace
-
-AnyBounds bounds_of(const Model& model, const py::object& given) {
-  constexpr const char* kDemand = "a Clearance and TaskBounds in a sequence";
-  if (!py::isinstance<py::iterable>(given)) reject_type(given, "bounds", kDemand);
-  Clearance<kDynamic> clearance(model.tree, {}, {}, 0.0);
-  TaskBounds<kDynamic> walls(model.tree);
-  SpeedBounds<kDynamic> speeds(model.tree);
-  bool is_clear = false;
-  for (const py::handle each : given) {
-    if (is_class(each, "clearance", "Clearance")) {
-      if (is_clear) validation::reject("bounds", " has two Clearances: must have at most one, with all shapes");
-      clearance = clearance_of(model, each);
-      is_clear = true;
-    } else {
-      require_class(each, "task_bounds", "TaskBounds", "bounds", kDemand);
-      add_task_bounds(walls, speeds, model, each);
-    }
-  }
-  return AnyBounds(clearance, walls, speeds);
-}
-
-std::optional<PyNearest> nearest_at(const Clearance<kDynamic>& clearance, const JointVector& q) {
-  if (clearance.empty()) return std::nullopt;
-  auto placed = clearance.placement();
-  const ShapePair& pair = clearance.pairs()[clearance.nearest_pair(q, placed).first];
-  const auto found = clearance.nearest_of(placed, pair);
-  Matrix<2, 3> points;
-  points << found.on_first.transpose(), found.on_second.transpose();
-  return PyNearest{clearance.names(pair), found.distance, points};
-}
-
-void move_obstacle(Clearance<kDynamic>& clearance, const std::string& name, const Shape& shape,
-                   const Vector<3>& velocity) {
-  const auto& obstacles = clearance.obstacles();
-  const auto found =
-      std::find_if(obstacles.begin(), obstacles.end(), [&](const auto& each) { return each.name == name; });
-  if (found == obstacles.end()) {
-    std::string names;
-    for (const auto& each : obstacles) names += (names.empty() ? "" : ", ") + each.name;
-    validation::reject("name", " = '" + name + "': must be one of the obstacles: " + (names.empty() ? "none" : names));
-  }
-  if (shape.any.index() != found->shape.index()) {
-    struct {
-      const char* operator()(const Capsule<>&) const { return "Capsule"; }
-      const char* operator()(const HalfSpace<>&) const { return "HalfSpace"; }
-      const char* operator()(const Cuboid<>&) const { return "Cuboid"; }
-    } kind;
-    validation::reject("shape",
-                       std::string(": must be a ") + std::visit(kind, found->shape) + ", like obstacle '" + name + "'");
-  }
-  if (shape.link != 0) validation::fail("shape.link", shape.link, "0, the base");
-  clearance.move(static_cast<std::size_t>(found - obstacles.begin()), shape.any, velocity);
-}
-
-namespace {
-
-/// A clearance for one robot or arm.
-class PyClearance {
- public:
-  using Pairs = std::vector<Clearance<kDynamic>::Names>;
-
-  PyClearance(const Given<Model>& model, const py::object& given)
-      : clearance_(clearance_of(model.as("arm", "an arm or a Robot"), given)) {}
-
-  [[nodiscard]] std::optional<PyNearest> nearest(const ArrayLike& q) const {
-    return nearest_at(clearance_, joint_vector(q, "q", static_cast<int>(clearance_.robot().dof())));
-  }
-  [[nodiscard]] Pairs pairs() const { return names(clearance_.pairs()); }
-  [[nodiscard]] Pairs excluded_pairs() const { return names(clearance_.excluded_pairs()); }
-
- private:
-  [[nodiscard]] Pairs names(const std::vector<ShapePair>& pairs) const {
-    Pairs found;
-    for (const ShapePair& pair : pairs) found.push_back(clearance_.names(pair));
-    return found;
-  }
-
-  Clearance<kDynamic> clearance_;
-};
 
 using PlainCapsule = py::typing::Tuple<py::int_, Array, Array, py::float_, py::str>;
 using PlainPair = py::typing::Tuple<py::str, py::str>;
@@ -182,6 +101,58 @@ Shape cuboid(const ArrayLike& pose, const ArrayLike& half) {
 
 }  // namespace
 
+AnyBounds bounds_of(const Model& model, const py::object& given) {
+  if (!py::isinstance<py::iterable>(given)) reject_type(given, "bounds", kBoundsDemand);
+  Clearance<kDynamic> clearance(model.tree, {}, {}, 0.0);
+  TaskBounds<kDynamic> walls(model.tree);
+  SpeedBounds<kDynamic> speeds(model.tree);
+  bool is_clear = false;
+  for (const py::handle each : given) {
+    if (is_class(each, "clearance", "Clearance")) {
+      if (is_clear) validation::reject("bounds", " has two Clearances: must have at most one, with all shapes");
+      clearance = clearance_of(model, each);
+      is_clear = true;
+    } else {
+      require_class(each, "task_bounds", "TaskBounds", "bounds", kBoundsDemand);
+      add_task_bounds(walls, speeds, model, each);
+    }
+  }
+  return AnyBounds(clearance, walls, speeds);
+}
+
+std::optional<PyNearest> nearest_at(const Clearance<kDynamic>& clearance, const JointVector& q) {
+  if (clearance.empty()) return std::nullopt;
+  auto placed = clearance.placement();
+  const ShapePair& pair = clearance.pairs()[clearance.nearest_pair(q, placed).first];
+  const auto found = clearance.nearest_of(placed, pair);
+  Matrix<2, 3> points;
+  points << found.on_first.transpose(), found.on_second.transpose();
+  return PyNearest{clearance.names(pair), found.distance, points};
+}
+
+void move_obstacle(Clearance<kDynamic>& clearance, const std::string& name, const Shape& shape,
+                   const Vector<3>& velocity) {
+  const auto& obstacles = clearance.obstacles();
+  const auto found =
+      std::find_if(obstacles.begin(), obstacles.end(), [&](const auto& each) { return each.name == name; });
+  if (found == obstacles.end()) {
+    std::string names;
+    for (const auto& each : obstacles) names += (names.empty() ? "" : ", ") + each.name;
+    validation::reject("name", " = '" + name + "': must be one of the obstacles: " + (names.empty() ? "none" : names));
+  }
+  if (shape.any.index() != found->shape.index()) {
+    struct {
+      const char* operator()(const Capsule<>&) const { return "Capsule"; }
+      const char* operator()(const HalfSpace<>&) const { return "HalfSpace"; }
+      const char* operator()(const Cuboid<>&) const { return "Cuboid"; }
+    } kind;
+    validation::reject("shape",
+                       std::string(": must be a ") + std::visit(kind, found->shape) + ", like obstacle '" + name + "'");
+  }
+  if (shape.link != 0) validation::fail("shape.link", shape.link, "0, the base");
+  clearance.move(static_cast<std::size_t>(found - obstacles.begin()), shape.any, velocity);
+}
+
 void bind_clearance(py::module_& m) {
   py::class_<Shape>(m, "Shape", "The compiled part of a shape.")
       .def(py::init(&capsule), py::kw_only(), py::arg("a"), py::arg("b"), py::arg("radius"), py::arg("link"))
@@ -201,11 +172,27 @@ void bind_clearance(py::module_& m) {
             .format(nearest.pair.first, nearest.pair.second, nearest.distance);
       });
 
-  py::class_<PyClearance>(m, "Clearance", "The compiled part of a clearance, for one robot.")
-      .def(py::init<const Given<Model>&, const py::object&>(), py::arg("arm"), py::arg("clearance"))
-      .def("nearest", &PyClearance::nearest, py::arg("q"))
-      .def("pairs", &PyClearance::pairs)
-      .def("excluded_pairs", &PyClearance::excluded_pairs);
+  using Compiled = Clearance<kDynamic>;
+  const auto names = [](const std::vector<ShapePair>& (Compiled::*pairs)() const) {
+    return [pairs](const Compiled& self) {
+      std::vector<Compiled::Names> found;
+      for (const ShapePair& pair : (self.*pairs)()) found.push_back(self.names(pair));
+      return found;
+    };
+  };
+  py::class_<Compiled>(m, "Clearance", "The compiled part of a clearance, for one robot.")
+      .def(py::init([](const Given<Model>& model, const py::object& given) {
+             return clearance_of(model.as("arm", "an arm or a Robot"), given);
+           }),
+           py::arg("arm"), py::arg("clearance"))
+      .def(
+          "nearest",
+          [](const Compiled& self, const ArrayLike& q) {
+            return nearest_at(self, joint_vector(q, "q", self.robot().dof()));
+          },
+          py::arg("q"))
+      .def("pairs", names(&Compiled::pairs))
+      .def("excluded_pairs", names(&Compiled::excluded_pairs));
 }
 
 }  // namespace fpbm::bindings

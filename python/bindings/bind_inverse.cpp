@@ -15,19 +15,41 @@
 #include <vector>
 
 #include "arrays.hpp"
-#include "clearance.hpp"
 #include "lanes.hpp"
 #include "postures.hpp"
-#include "read_stack.hpp"
+#include "read.hpp"
 
 namespace fpbm::bindings {
 namespace {
 
 /// A posture in Python.
-struct PyPosture {
-  AnyPosture found;
+struct PyPosture : AnyPosture {
   std::optional<double> rank_value = {};  ///< Set by PyInverse::solve_all().
 };
+
+/// The options of InverseKinematics in Python.
+struct PyInverseOptions {
+  std::string task;
+  py::object stack;
+  py::object limits;
+  py::tuple bounds;
+  InverseOptions<> search;
+
+  /// Whether the options are the same objects and equal numbers.
+  [[nodiscard]] bool is_same(const PyInverseOptions& other) const {
+    const auto same = [](const py::handle& a, const py::handle& b) { return a.is(b); };
+    return task == other.task && stack.is(other.stack) && limits.is(other.limits) &&
+           search.tolerance == other.search.tolerance && search.starts == other.search.starts &&
+           search.seed == other.search.seed &&
+           std::equal(bounds.begin(), bounds.end(), other.bounds.begin(), other.bounds.end(), same);
+  }
+};
+
+/// The bounds as a tuple. Throws std::invalid_argument unless they are a sequence.
+py::tuple tuple_of(const py::object& bounds) {
+  if (!py::isinstance<py::iterable>(bounds)) reject_type(bounds, "bounds", kBoundsDemand);
+  return py::tuple(bounds);
+}
 
 /// Postures for several targets.
 struct PyPostures {
@@ -39,37 +61,27 @@ struct PyPostures {
 };
 
 /// The point of a task space from Space::kSize numbers. A rotation with errors up to kLargest is replaced by the
-/// nearest rotation. name(): name of the target. Throws std::invalid_argument.
+/// nearest rotation. name() returns the name of the target. Throws std::invalid_argument.
 template <typename Space, typename Name>
-[[nodiscard]] typename Space::template Point<double> point_of(const double* numbers, const Name& name) {
+[[nodiscard]] typename Space::template Point<double> target_at(const double* numbers, const Name& name) {
+  constexpr bool kMatrix = std::is_same_v<Space, Pose>;
   for (int i = 0; i < Space::kSize; ++i) {
-    if (!std::isfinite(numbers[i])) {
-      const std::string target = name();
-      if constexpr (std::is_same_v<Space, Pose>) {
-        validation::fail(validation::element(target, i / 4, i % 4), numbers[i], "finite");
-      } else {
-        validation::fail(validation::element(target, i), numbers[i], "finite");
-      }
-    }
+    if (std::isfinite(numbers[i])) continue;
+    validation::fail(kMatrix ? validation::element(name(), i / 4, i % 4) : validation::element(name(), i), numbers[i],
+                     "finite");
   }
-  if constexpr (std::is_same_v<Space, Pose>) {
+  if constexpr (kMatrix) {
     constexpr double kLargest = 1e-3;
-    Eigen::Matrix4d H = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(numbers);
+    Eigen::Matrix4d H = Eigen::Map<const RowMajor>(numbers, 4, 4);
     const Matrix<3, 3> R = H.topLeftCorner<3, 3>();
     const double error = (R.transpose() * R - Matrix<3, 3>::Identity()).cwiseAbs().maxCoeff();
     if (!(error <= kLargest)) {
-      const std::string target = name();
-      validation::fail(validation::Argument(target) + ".R's largest error of R'R", error,
-                       "at most 0.001: must be a rotation matrix");
+      validation::fail(name() + ".R's largest error of R'R", error, "at most 0.001: must be a rotation matrix");
     }
     H.topLeftCorner<3, 3>() = nearest_rotation(nearest_rotation(R));
-    std::string target;
-    return transform_of(H, [&] {
-      target = name();
-      return validation::Argument(target);
-    });
+    return transform_of(H, name);
   } else {
-    return Eigen::Map<const Vector<Space::kSize>>(numbers);
+    return point_at<Space>(numbers, name);
   }
 }
 
@@ -88,8 +100,9 @@ template <typename Space>
   std::vector<typename Space::template Point<double>> points;
   points.reserve(static_cast<std::size_t>(count.value_or(1)));
   for (py::ssize_t i = 0; i < count.value_or(1); ++i) {
-    points.push_back(point_of<Space>(array.data() + i * Space::kSize,
-                                     [&] { return count ? name + "[" + std::to_string(i) + "]" : name; }));
+    points.push_back(target_at<Space>(array.data() + i * Space::kSize, [&] {
+      return count ? validation::element(name, i) : validation::Argument(name);
+    }));
   }
   return points;
 }
@@ -189,8 +202,8 @@ template <int N>
 std::unique_ptr<PostureSolver<Pose>> in_lanes(const Arm& arm, const InverseOptions<>& options,
                                               const JointLimits<kDynamic>& limits) {
   const auto* chain = std::get_if<Chain<>>(&arm.source);
-  if (lane_code() == nullptr || chain == nullptr || arm.dof() != N || chain->joints.size() != N) return nullptr;
-  return std::get<PosturesInLanes<N>>(lane_code()->postures)(
+  if (selected_lanes == nullptr || chain == nullptr || arm.dof() != N || chain->joints.size() != N) return nullptr;
+  return std::get<PosturesInLanes<N>>(selected_lanes->postures)(
       *chain, options, {limits.lower, limits.upper, limits.velocity, limits.acceleration});
 }
 
@@ -207,37 +220,35 @@ std::unique_ptr<PostureSolver<Pose>> in_lanes(const Arm& arm, const InverseOptio
   return {model.tree, {{"target", kind, 0, is_pose ? 6 : 3, {}}}, {std::nullopt}, 1, stack, stack};
 }
 
-StackTargets stack_targets(const Model& model, const StackPlan& plan, const InverseOptions<>& options,
-                           const JointLimits<kDynamic>& limits, const py::object& bounds, bool is_tip) {
-  AnyBounds all = bounds_of(model, bounds);
-  return {posture_solver(model.tree, plan.velocity, options, limits, all), plan, all.clearance(), is_tip};
-}
-
-AnyTargets targets_of(const Model& model, const std::string& task, const py::object& stack,
-                      const InverseOptions<>& options, const JointLimits<kDynamic>& limits, const py::object& bounds) {
-  if (!stack.is_none()) return stack_targets(model, read_stack(stack, model), options, limits, bounds, false);
+AnyTargets targets_of(const Model& model, const PyInverseOptions& given, const JointLimits<kDynamic>& limits) {
+  const auto of_stack = [&](const StackPlan& plan, bool is_tip) -> AnyTargets {
+    AnyBounds bounds = bounds_of(model, given.bounds);
+    return StackTargets{posture_solver(model.tree, plan.velocity, given.search, limits, bounds), plan,
+                        bounds.clearance(), is_tip};
+  };
+  if (!given.stack.is_none()) return of_stack(read_stack(given.stack, model), false);
   const auto* arm = dynamic_cast<const Arm*>(&model);
   if (arm == nullptr) validation::reject("stack", ": must be given for a Robot, because a Robot has several tips");
-  return arm->visit(task, [&](const auto& any, auto space) -> AnyTargets {
+  return arm->visit(given.task, [&](const auto& any, auto space) -> AnyTargets {
     using Space = decltype(space);
-    if (py::len(py::tuple(bounds)) > 0) {
+    if (!given.bounds.empty()) {
       if (model.planar) validation::reject("bounds", ": a planar arm needs a stack: give stack=fp.Stack(…)");
-      return stack_targets(model, plan_of_tip(model, Space::kTurns > 0), options, limits, bounds, true);
+      return of_stack(plan_of_tip(model, Space::kTurns > 0), true);
     }
     if constexpr (std::is_same_v<Space, Pose>) {
-      if (auto seven = in_lanes<7>(*arm, options, limits)) return TipTargets<Pose>{std::move(seven)};
-      if (auto six = in_lanes<6>(*arm, options, limits)) return TipTargets<Pose>{std::move(six)};
+      if (auto seven = in_lanes<7>(*arm, given.search, limits)) return TipTargets<Pose>{std::move(seven)};
+      if (auto six = in_lanes<6>(*arm, given.search, limits)) return TipTargets<Pose>{std::move(six)};
     }
-    return TipTargets<Space>{posture_solver<Space>(any, options, limits)};
+    return TipTargets<Space>{posture_solver<Space>(any, given.search, limits)};
   });
 }
 
 class PyInverse {
  public:
-  PyInverse(const Model& model, const std::string& task, const py::object& stack, const py::object& limits,
-            const py::object& bounds, double tolerance, int starts, std::uint32_t seed)
-      : limits_(limits_of(model, limits)),
-        any_(targets_of(model, task, stack, {tolerance, starts, seed}, limits_, bounds)) {}
+  PyInverse(const Model& model, const PyInverseOptions& options)
+      : options_(options), limits_(limits_of(model, options.limits)), any_(targets_of(model, options, limits_)) {}
+
+  [[nodiscard]] const PyInverseOptions& options() const noexcept { return options_; }
 
   /// A posture for a target, or an array of postures for several targets.
   [[nodiscard]] std::variant<PyPosture, PyPostures> solve(const py::object& target, const OptionalArray& start) {
@@ -267,8 +278,7 @@ class PyInverse {
           const py::gil_scoped_release others_may_run;
           const std::lock_guard lock(mutex_);
           of.solver->search(points[0], q0, [&](const AnyPosture& posture) {
-            if (std::none_of(found.begin(), found.end(),
-                             [&](const auto& known) { return is_same(known.found, posture); })) {
+            if (std::none_of(found.begin(), found.end(), [&](const auto& known) { return is_same(known, posture); })) {
               found.push_back({posture, value(posture.q)});
             }
             return false;
@@ -276,9 +286,7 @@ class PyInverse {
         },
         any_);
     const double sign = rank == "distance" ? 1.0 : -1.0;
-    const auto place = [&](const PyPosture& one) {
-      return std::pair(sign * *one.rank_value, (one.found.q - q0).norm());
-    };
+    const auto place = [&](const PyPosture& one) { return std::pair(sign * *one.rank_value, (one.q - q0).norm()); };
     std::sort(found.begin(), found.end(), [&](const auto& a, const auto& b) { return place(a) < place(b); });
     found.erase(found.begin() + std::min(static_cast<std::ptrdiff_t>(found.size()), std::ptrdiff_t{count}),
                 found.end());
@@ -385,66 +393,35 @@ class PyInverse {
     return all;
   }
 
+  PyInverseOptions options_;
   JointLimits<kDynamic> limits_;
   AnyTargets any_;
   std::mutex mutex_;  ///< Locks the solver, because the interpreter's lock is released.
 };
 
-/// The last solver of a model, for repeated calls of inverse() with the same options.
-struct InverseMemory {
-  std::string task;
-  py::object stack;
-  py::object limits;
-  py::tuple bounds;
-  double tolerance;
-  int starts;
-  std::uint32_t seed;
-  std::shared_ptr<PyInverse> solver;
-
-  [[nodiscard]] bool is_for(const std::string& task_, const py::object& stack_, const py::object& limits_,
-                            const py::tuple& bounds_, double tolerance_, int starts_, std::uint32_t seed_) const {
-    const auto is_same = [](const py::handle& a, const py::handle& b) { return a.is(b); };
-    return task == task_ && stack.is(stack_) && limits.is(limits_) && tolerance == tolerance_ && starts == starts_ &&
-           seed == seed_ && std::equal(bounds.begin(), bounds.end(), bounds_.begin(), bounds_.end(), is_same);
-  }
-};
-
 /// The solver of a model with these options, of the last call or new.
-std::shared_ptr<PyInverse> solver_of(const Model& model, const std::string& task, const py::object& stack,
-                                     const py::object& limits, const py::object& bounds, double tolerance, int starts,
-                                     std::uint32_t seed) {
-  if (!py::isinstance<py::iterable>(bounds)) (void)bounds_of(model, bounds);
-  const auto each = py::isinstance<py::tuple>(bounds) ? py::reinterpret_borrow<py::tuple>(bounds) : py::tuple(bounds);
-  auto memory = std::static_pointer_cast<InverseMemory>(model.inverse);
-  if (!memory || !memory->is_for(task, stack, limits, each, tolerance, starts, seed)) {
-    memory = std::make_shared<InverseMemory>(
-        InverseMemory{task, stack, limits, each, tolerance, starts, seed,
-                      std::make_shared<PyInverse>(model, task, stack, limits, each, tolerance, starts, seed)});
-    model.inverse = memory;
-  }
-  return memory->solver;
+std::shared_ptr<PyInverse> solver_of(const Model& model, const PyInverseOptions& options) {
+  auto last = std::static_pointer_cast<PyInverse>(model.inverse);
+  if (last && last->options().is_same(options)) return last;
+  auto solver = std::make_shared<PyInverse>(model, options);
+  model.inverse = solver;
+  return solver;
 }
 
 void bind_postures(py::module_& m) {
   py::class_<PyPosture>(m, "Posture", "A posture for a target: the result of inverse kinematics.")
       .def_property_readonly(
-          "q", [](const PyPosture& self) { return array_of(self.found.q); },
+          "q", [](const PyPosture& self) { return array_of(self.q); },
           "The posture, or the nearest posture found [rad], or [m] for a prismatic joint, shape (n,).")
-      .def_property_readonly(
-          "solved", [](const PyPosture& self) { return self.found.solved(); },
-          "Whether the target is reached within the tolerance, the ranges and the bounds.")
-      .def_property_readonly(
-          "error", [](const PyPosture& self) { return self.found.error; },
-          "Largest distance [m] or angle [rad] from the target.")
-      .def_property_readonly(
-          "status", [](const PyPosture& self) { return self.found.status; }, "OK or NOT_FOUND.")
-      .def_property_readonly(
-          "starts", [](const PyPosture& self) { return self.found.starts; }, "Number of start postures used.")
+      .def_property_readonly("solved", &PyPosture::solved,
+                             "Whether the target is reached within the tolerance, the ranges and the bounds.")
+      .def_readonly("error", &PyPosture::error, "Largest distance [m] or angle [rad] from the target.")
+      .def_readonly("status", &PyPosture::status, "OK or NOT_FOUND.")
+      .def_readonly("starts", &PyPosture::starts, "Number of start postures used.")
       .def_readonly("rank_value", &PyPosture::rank_value, "The value by which inverse_all ranks; otherwise None.")
       .def("__repr__", [](const PyPosture& self) {
-        const std::string state = self.found.solved() ? "solved" : "not found";
-        return "<Posture " + state + ", error " + py::cast<std::string>(py::str(py::float_(self.found.error))) +
-               ", q = " + py::cast<std::string>(py::str(array_of(self.found.q))) + ">";
+        return py::str("<Posture {}, error {}, q = {}>")
+            .format(self.solved() ? "solved" : "not found", self.error, array_of(self.q));
       });
   py::class_<PyPostures>(m, "Postures", "Postures for K targets.")
       .def_readonly("q", &PyPostures::q, "The postures, shape (K, n) [rad or m].")
@@ -501,8 +478,8 @@ ParameterError
       .def(py::init([](const Given<Model>& arm, const std::string& task_, const py::object& stack_,
                        const py::object& limits_, const py::object& bounds_, double tolerance_, int starts_,
                        std::uint32_t seed_) {
-             return std::make_shared<PyInverse>(arm.as("arm", "an arm or a Robot"), task_, stack_, limits_, bounds_,
-                                                tolerance_, starts_, seed_);
+             const PyInverseOptions options{task_, stack_, limits_, tuple_of(bounds_), {tolerance_, starts_, seed_}};
+             return std::make_shared<PyInverse>(arm.as("arm", "an arm or a Robot"), options);
            }),
            py::arg("arm"), py::kw_only(), task, stack, limits, bounds, tolerance, starts, seed)
       .def("solve", &PyInverse::solve, py::arg("target"), py::arg("start") = none,
@@ -526,7 +503,8 @@ first level of the stack; 'ranges', the largest distance from the ends of the ra
       [](const Model& self, const py::object& target, const OptionalArray& start, const std::string& task_,
          const py::object& stack_, const py::object& limits_, const py::object& bounds_, double tolerance_, int starts_,
          std::uint32_t seed_) {
-        return solver_of(self, task_, stack_, limits_, bounds_, tolerance_, starts_, seed_)->solve(target, start);
+        return solver_of(self, {task_, stack_, limits_, tuple_of(bounds_), {tolerance_, starts_, seed_}})
+            ->solve(target, start);
       },
       py::arg("target"), py::arg("start") = none, py::kw_only(), task, stack, limits, bounds, tolerance, starts, seed,
       "A posture for a target: InverseKinematics(arm, ...).solve(target, start).");
@@ -535,7 +513,7 @@ first level of the stack; 'ranges', the largest distance from the ends of the ra
       [](const Model& self, const py::object& target, const OptionalArray& start, int count, const std::string& rank_,
          const std::string& task_, const py::object& stack_, const py::object& limits_, const py::object& bounds_,
          double tolerance_, int starts_, std::uint32_t seed_) {
-        return solver_of(self, task_, stack_, limits_, bounds_, tolerance_, starts_, seed_)
+        return solver_of(self, {task_, stack_, limits_, tuple_of(bounds_), {tolerance_, starts_, seed_}})
             ->solve_all(target, start, count, rank_);
       },
       py::arg("target"), py::arg("start") = none, py::arg("count") = 16, py::kw_only(), rank, task, stack, limits,

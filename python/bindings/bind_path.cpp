@@ -14,7 +14,7 @@
 #include "fpbm/path/sequence.hpp"
 #include "fpbm/path/waypoints.hpp"
 #include "fpbm/path/with_rotation.hpp"
-#include "path.hpp"
+#include "sources.hpp"
 
 namespace fpbm::bindings {
 
@@ -30,13 +30,6 @@ template AnyPath<Pose> Path::as() const;
 
 namespace {
 
-/// One finite number.
-double number(const ArrayLike& argument, const char* name) {
-  const double value = *real_array(argument, name, 0).data();
-  validation::require_finite(name, value);
-  return value;
-}
-
 /// A path along a shape, with the time law of that name.
 template <typename Shape>
 Path make_path(const Shape& shape, double duration, const std::string& law) {
@@ -49,7 +42,7 @@ Path circle(double radius, double duration, const std::string& law) {
 
 Path lissajous(const ArrayLike& amplitude, double duration, const ArrayLike& frequencies, double phase,
                const std::string& law) {
-  const Vector<2> both = dimensions(amplitude) == 0 ? Vector<2>(Vector<2>::Constant(number(amplitude, "amplitude")))
+  const Vector<2> both = dimensions(amplitude) == 0 ? Vector<2>(Vector<2>::Constant(py::cast<double>(amplitude)))
                                                     : fixed_vector<2>(amplitude, "amplitude");
   return make_path(Lissajous<double>(both, fixed_vector<2>(frequencies, "frequencies").cast<int>(), phase), duration,
                    law);
@@ -77,7 +70,8 @@ Path in_plane(const Path& path, const ArrayLike& axes) {
 
 Path with_rotation(const Path& path, const ArrayLike& rotation, const std::string& law) {
   if (const auto* flat = std::get_if<AnyPath<Position<2>>>(&path.any)) {
-    return {AnyPath<PlanarPose>(WithRotation(*flat, Vector<1>(number(rotation, "rotation")), AnyTimeLaw(law)))};
+    return {AnyPath<PlanarPose>(
+        WithRotation(*flat, Vector<1>(*real_array(rotation, "rotation", 0).data()), AnyTimeLaw(law)))};
   }
   const auto* spatial = std::get_if<AnyPath<Position<3>>>(&path.any);
   if (spatial == nullptr) {
@@ -113,22 +107,15 @@ Path sequence(const std::vector<const Path*>& paths) {
 using Timing = std::variant<double, std::vector<double>, TipBounds<>>;
 
 template <typename Space>
-Path waypoints_in(const std::vector<typename Space::template Point<double>>& points, const Timing& timing) {
+Path waypoints_in(const Array& array, const Timing& timing) {
   using Spline = Waypoints<Space>;
+  std::vector<typename Space::template Point<double>> points;
+  for (py::ssize_t i = 0; i < array.shape(0); ++i) {
+    points.push_back(point_at<Space>(array.data(i), [i] { return validation::element("points", i); }));
+  }
   if (const auto* duration = std::get_if<double>(&timing)) return {AnyPath<Space>(Spline::lasting(points, *duration))};
   if (const auto* bounds = std::get_if<TipBounds<>>(&timing)) return {AnyPath<Space>(Spline::within(points, *bounds))};
   return {AnyPath<Space>(Spline(points, std::get<std::vector<double>>(timing)))};
-}
-
-/// The entries of an array of points.
-template <typename Space>
-std::vector<typename Space::template Point<double>> points_of(const Array& array) {
-  std::vector<typename Space::template Point<double>> points;
-  for (py::ssize_t i = 0; i < array.shape(0); ++i) {
-    const std::string name = validation::element("points", i).text();
-    points.push_back(point<Space>(ArrayLike(py::object(array[py::int_(i)])), name.c_str()));
-  }
-  return points;
 }
 
 Path waypoints(const ArrayLike& points, const std::optional<double>& duration, const OptionalArray& times,
@@ -148,10 +135,8 @@ Path waypoints(const ArrayLike& points, const std::optional<double>& duration, c
   }
   const bool poses = dimensions(points) == 3;
   const Array array = real_array(points, "points", poses ? 3 : 2);
-  if (poses) return waypoints_in<Pose>(points_of<Pose>(array), timing);
-  if (array.shape(1) == 2) return waypoints_in<Position<2>>(points_of<Position<2>>(array), timing);
-  if (array.shape(1) == 3) return waypoints_in<Position<3>>(points_of<Position<3>>(array), timing);
-  validation::reject("points", ": must have shape (k, 2), (k, 3) or (k, 4, 4), got " + shape_text(array));
+  if (poses) return waypoints_in<Pose>(array, timing);
+  return array.shape(1) == 2 ? waypoints_in<Position<2>>(array, timing) : waypoints_in<Position<3>>(array, timing);
 }
 
 py::typing::Tuple<Array, Array, Array> sample(const Path& path, double t) {

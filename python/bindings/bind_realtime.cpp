@@ -6,12 +6,10 @@
 #include <vector>
 
 #include "arrays.hpp"
-#include "clearance.hpp"
-#include "path.hpp"
-#include "read_stack.hpp"
+#include "read.hpp"
 #include "scheme.hpp"
+#include "sources.hpp"
 #include "stack_loop.hpp"
-#include "target_filter.hpp"
 #include "tracker.hpp"
 
 namespace fpbm::bindings {
@@ -30,11 +28,7 @@ struct PyTick {
   Eigen::VectorXd scales;                         ///< For a stack: scale of each level.
   std::shared_ptr<const StackLoop::Parts> parts;  ///< For a stack: the tasks of the error's entries.
 
-  [[nodiscard]] py::array_t<bool> saturated_joints() const {
-    py::array_t<bool> joints(q.size());
-    for (Eigen::Index i = 0; i < q.size(); ++i) joints.mutable_at(i) = ((saturated >> i) & 1U) != 0;
-    return joints;
-  }
+  [[nodiscard]] py::array_t<bool> saturated_joints() const { return array_of(saturated, q.size()); }
   [[nodiscard]] std::optional<Array> level_scales() const {
     return parts ? std::optional(array_of(scales)) : std::nullopt;
   }
@@ -89,19 +83,6 @@ class PyTracker {
         },
         any_);
   }
-  /// Calls visitor(tracker), also with a tracker of a stack.
-  template <typename Visitor>
-  auto visit_any(Visitor&& visitor) const {
-    return std::visit(
-        [&](const auto& held) {
-          if constexpr (std::is_same_v<std::decay_t<decltype(held)>, Stacked>) {
-            return visitor(held->tracker());
-          } else {
-            return visitor(*held);
-          }
-        },
-        any_);
-  }
 
  public:
   PyTracker(const Model& model, const Scheme& scheme, const ArrayLike& q0, const OptionalArray& qd0,
@@ -125,6 +106,20 @@ class PyTracker {
       require_enough_joints<Space>(dof_);
       return Any(make_tracker<Space>(any, scheme, from));
     });
+  }
+
+  /// Calls visitor(tracker), also with a tracker of a stack.
+  template <typename Visitor>
+  auto visit_any(Visitor&& visitor) const {
+    return std::visit(
+        [&](const auto& held) {
+          if constexpr (std::is_same_v<std::decay_t<decltype(held)>, Stacked>) {
+            return visitor(held->tracker());
+          } else {
+            return visitor(*held);
+          }
+        },
+        any_);
   }
 
   [[nodiscard]] PyTick tick(const PyReferences& references) {
@@ -195,24 +190,6 @@ class PyTracker {
     visit_any([&](auto& tracker) { move_obstacle(tracker.clearance(), name, shape, v); });
   }
 
-  void stop() {
-    visit_any([](auto& tracker) { tracker.stop(); });
-  }
-  void resume() {
-    visit_any([](auto& tracker) { tracker.resume(); });
-  }
-  [[nodiscard]] Array q() {
-    return visit_any([](auto& tracker) { return array_of(tracker.state().q); });
-  }
-  [[nodiscard]] Array qd() {
-    return visit_any([](auto& tracker) { return array_of(tracker.state().qd); });
-  }
-  [[nodiscard]] Array qdd() {
-    return visit_any([](auto& tracker) { return array_of(tracker.acceleration()); });
-  }
-  [[nodiscard]] double sigma() {
-    return visit_any([](auto& tracker) { return tracker.sigma(); });
-  }
   [[nodiscard]] py::object tip() {
     if (const auto* stacked = std::get_if<Stacked>(&any_)) return (*stacked)->points();
     return visit("", [](auto& tracker, auto) -> py::object { return array_of(tracker.tip()); });
@@ -275,6 +252,7 @@ void bind_follower(py::module_& m) {
 }  // namespace
 
 void bind_realtime(py::module_& m) {
+  const auto any = [](auto visitor) { return [visitor](PyTracker& self) { return self.visit_any(visitor); }; };
   bind_tick(m);
   bind_follower(m);
   const auto none = py::none();
@@ -414,14 +392,17 @@ The tasks keep their targets; tick.scales and enable() use the new levels. Comma
 
 shape must have the kind of the given obstacle; place and size may change. Raises ParameterError if no obstacle has
 that name, or if the shape has another kind.)")
-      .def("stop", &PyTracker::stop,
+      .def("stop", any([](auto& tracker) { tracker.stop(); }),
            "Brings every joint to rest as fast as the limits allow, until resume; with keep_first_level, in the null\n"
            "space of the first level.")
-      .def("resume", &PyTracker::resume, "Follows references again.")
-      .def_property_readonly("q", &PyTracker::q, "Joint positions of the tracker's own state [rad].")
-      .def_property_readonly("qd", &PyTracker::qd, "Joint velocities of the tracker's own state [rad/s].")
-      .def_property_readonly("qdd", &PyTracker::qdd, "Joint accelerations of the last tick [rad/s^2].")
-      .def_property_readonly("sigma", &PyTracker::sigma,
+      .def("resume", any([](auto& tracker) { tracker.resume(); }), "Follows references again.")
+      .def_property_readonly("q", any([](auto& tracker) { return array_of(tracker.state().q); }),
+                             "Joint positions of the tracker's own state [rad].")
+      .def_property_readonly("qd", any([](auto& tracker) { return array_of(tracker.state().qd); }),
+                             "Joint velocities of the tracker's own state [rad/s].")
+      .def_property_readonly("qdd", any([](auto& tracker) { return array_of(tracker.acceleration()); }),
+                             "Joint accelerations of the last tick [rad/s^2].")
+      .def_property_readonly("sigma", any([](auto& tracker) { return tracker.sigma(); }),
                              "Lower bound on the least singular value of J of the tracker's own state, tight within a "
                              "factor sqrt(m); for a stack, of the first level.")
       .def_property_readonly(

@@ -1,48 +1,40 @@
-#include <algorithm>
+#include <pybind11/typing.h>
 
-#include "bindings.hpp"
-#include "clearance.hpp"
-#include "motion_arrays.hpp"
-#include "read_stack.hpp"
+#include <algorithm>
+#include <atomic>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "motion.hpp"
+#include "read.hpp"
+#include "sources.hpp"
+#include "sweep.hpp"
 
 namespace fpbm::bindings {
 namespace {
 
+/// The arrays of a motion by name, one row per sample.
+using Arrays = py::typing::Dict<py::str, py::array>;
+
 /// Status, time of the last sample, number of samples, and arrays with this number of filled rows.
 using Outcomes = py::typing::Tuple<Status, double, int, Arrays>;
 
-/// A whole motion, run without the interpreter's lock. With limit options, the motion keeps the limits. With stack
-/// options, the motion has several tasks.
-Outcomes rollout(const Model& arm, const Path& path, const Scheme& scheme, const ArrayLike& q0, const ArrayLike& qd0,
-                 double dt, double hold, const std::string& task, const py::object& options, const py::object& tasks) {
-  const State<kDynamic> start{joint_vector(q0, "q0", arm.dof()), joint_vector(qd0, "qd0", arm.dof())};
-  const std::optional<LimitOptions> limit_options = limit_options_of(options, arm);
-  const std::optional<StackOptions> stack_options = stack_options_of(tasks, arm, path);
-  const StackOptions* const stack = pointer_to(stack_options);
-  const TimeGrid<double> grid(duration_of(path, stack), dt, hold);
-  return visit_space(arm, task, stack != nullptr, [&](const auto* any, auto space) -> Outcomes {
-    using Space = decltype(space);
-    const AnyPath<Space> same = path.as<Space>();
-    MotionArrays<Space> arrays(grid.samples(), arm.dof(), pointer_to(limit_options), stack);
-    const Output<Space> output = arrays.output();
-    const Motion<Space> motion{any, same, scheme, start, grid, stack};
-    RolloutResult<kDynamic> result;
-    {
-      const py::gil_scoped_release others_may_run;
-      result = limit_options ? motion.track(*limit_options, output) : motion.simulate(output);
-    }
-    return py::make_tuple(result.status, result.time, result.samples, arrays.all());
-  });
-}
+using Schemes = std::vector<const Scheme*>;
+using Chunk = py::typing::Tuple<py::array, py::typing::List<Arrays>>;
 
-}  // namespace
+/// Ends all motions of a sweep, from any thread.
+struct Stop {
+  std::atomic<bool> flag{false};
+};
 
+/// Limit options from a LimitOptions of motion/simulation.py, or none.
 std::optional<LimitOptions> limit_options_of(const py::object& given, const Model& model) {
   if (given.is_none()) return std::nullopt;
   const auto number = [&](const char* name) { return py::cast<double>(given.attr(name)); };
-  const py::object limits = given.attr("limits");
   LimitOptions limit_options{
-      limits_of(model, limits),
+      limits_of(model, given.attr("limits")),
       {1e-3, number("error_bound"), number("integral_gain"), number("integral_bound"), number("stall_time"),
        SingularDamping<>(number("singular_radius"), number("singular_brake")), number("null_damping")},
       bounds_of(model, given.attr("bounds"))};
@@ -53,6 +45,8 @@ std::optional<LimitOptions> limit_options_of(const py::object& given, const Mode
   return limit_options;
 }
 
+/// The tasks of a stack from a StackTasks of motion/simulation.py, or none. path: the path of the task with the name
+/// given.task.
 std::optional<StackOptions> stack_options_of(const py::object& given, const Model& model, const Path& path) {
   if (given.is_none()) return std::nullopt;
   StackOptions options{read_stack(given.attr("stack"), model), {}, 0.0};
@@ -73,10 +67,207 @@ std::optional<StackOptions> stack_options_of(const py::object& given, const Mode
   return options;
 }
 
+/// The options of motions. limit_options, stack_tasks: objects of motion/simulation.py, or None.
+class MotionOptions {
+ public:
+  MotionOptions(const Model& model, const Path& path, double dt, double hold, const py::object& limit_options,
+                const py::object& stack_tasks)
+      : limits_(limit_options_of(limit_options, model)),
+        stack_(stack_options_of(stack_tasks, model, path)),
+        grid_(stack_ ? stack_->duration : path.duration(), dt, hold) {}
+
+  /// Null without limits.
+  [[nodiscard]] const LimitOptions* limits() const noexcept { return limits_ ? &*limits_ : nullptr; }
+  /// Null without a stack.
+  [[nodiscard]] const StackOptions* stack() const noexcept { return stack_ ? &*stack_ : nullptr; }
+  [[nodiscard]] const TimeGrid<double>& grid() const noexcept { return grid_; }
+
+ private:
+  std::optional<LimitOptions> limits_;
+  std::optional<StackOptions> stack_;
+  TimeGrid<double> grid_;
+};
+
+/// Arrays for a motion of n joints.
+template <typename Space>
+struct MotionArrays {
+  MotionArrays(const MotionOptions& options, py::ssize_t n) {
+    using Row = std::vector<py::ssize_t>;
+    const auto add = [&](const char* name, auto number, Row shape) {
+      shape.insert(shape.begin(), options.grid().samples());
+      py::array_t<decltype(number)> array(shape);
+      all[name] = array;
+      return array.mutable_data();
+    };
+    const Row point = std::is_same_v<Space, Pose> ? Row{4, 4} : Row{Space::kSize};
+    output.buffers = {add("t", 0.0, {}),
+                      add("q", 0.0, {n}),
+                      add("qd", 0.0, {n}),
+                      add("qdd", 0.0, {n}),
+                      add("x", 0.0, point),
+                      add("x_ref", 0.0, point),
+                      add("error", 0.0, {Space::kRows})};
+    const StackOptions* stack = options.stack();
+    if (options.limits() != nullptr) {
+      output.scale = add("scale", 0.0, {});
+      output.saturated = add("saturated", false, {n});
+      if (options.limits()->keeps_clear) output.clearance = add("clearance", 0.0, {});
+      if (stack != nullptr) output.scales = add("scales", 0.0, {stack->plan.levels});
+    }
+    if (stack != nullptr) output.errors = add("task_errors", 0.0, {stack->plan.error_size()});
+  }
+
+  Arrays all;
+  Output<Space> output;  ///< Pointers to the numbers of the arrays.
+};
+
+/// A whole motion, run without the interpreter's lock. With limit options, the motion keeps the limits. With stack
+/// tasks, the motion has several tasks.
+Outcomes rollout(const Model& arm, const Path& path, const Scheme& scheme, const ArrayLike& q0, const ArrayLike& qd0,
+                 double dt, double hold, const std::string& task, const py::object& limit_options,
+                 const py::object& stack_tasks) {
+  const State<kDynamic> start{joint_vector(q0, "q0", arm.dof()), joint_vector(qd0, "qd0", arm.dof())};
+  const MotionOptions options(arm, path, dt, hold, limit_options, stack_tasks);
+  return visit_space(arm, task, options.stack() != nullptr, [&](const auto* any, auto space) -> Outcomes {
+    using Space = decltype(space);
+    const AnyPath<Space> same = path.as<Space>();
+    const MotionArrays<Space> arrays(options, arm.dof());
+    const Motion<Space> motion{any, same, scheme, start, options.grid(), options.stack()};
+    RolloutResult<kDynamic> result;
+    {
+      const py::gil_scoped_release others_may_run;
+      result =
+          options.limits() != nullptr ? motion.track(*options.limits(), arrays.output) : motion.simulate(arrays.output);
+    }
+    return py::make_tuple(result.status, result.time, result.samples, arrays.all);
+  });
+}
+
+/// One start or several starts as rows.
+Array starts(const ArrayLike& q0s, int dof) {
+  if (dimensions(q0s) < 2) return array_of(RowMajor(joint_vector(q0s, "q0s", dof).transpose()));
+  if (dimensions(q0s) > 2) {
+    validation::reject("q0s", ": must have shape (n,) or (K, n), got shape " + shape_text(py::array::ensure(q0s)));
+  }
+  const auto rows = real_array(q0s, "q0s", 2);
+  if (rows.shape(0) == 0) validation::reject("q0s", ": must have at least one row");
+  validation::require_size("a row of q0s", rows.shape(1), dof);
+  return array_of(matrix(q0s, "q0s", rows.shape(0), dof));
+}
+
+JointVector row(const Array& rows, py::ssize_t i) {
+  return Eigen::Map<const Eigen::VectorXd>(rows.data(i, 0), rows.shape(1));
+}
+
+/// Checks all arguments of a sweep. Returns the starts as rows, and the number of samples of a motion.
+py::typing::Tuple<Array, int> check_sweep(const Model& arm, const Path& path, const Schemes& schemes,
+                                          const ArrayLike& q0s, double dt, double hold, const std::string& task,
+                                          const py::object& limit_options, const py::object& stack_tasks) {
+  const Array rows = starts(q0s, arm.dof());
+  const MotionOptions options(arm, path, dt, hold, limit_options, stack_tasks);
+  visit_space(arm, task, options.stack() != nullptr, [&](const auto* any, auto space) {
+    using Space = decltype(space);
+    const AnyPath<Space> same = path.as<Space>();
+    const JointVector rest = JointVector::Zero(arm.dof());
+    for (std::size_t i = 0; i < schemes.size(); ++i) {
+      // Only the check of a start against limits depends on the row. All other checks depend on the scheme.
+      const py::ssize_t checked = options.limits() != nullptr ? rows.shape(0) : 1;
+      for (py::ssize_t k = 0; k < checked; ++k) {
+        try {
+          Motion<Space>{any, same, *schemes[i], {row(rows, k), rest}, options.grid(), options.stack()}.require(
+              options.limits());
+        } catch (const ParameterError& wrong) {
+          const std::string which = options.limits() != nullptr ? ", q0s[" + std::to_string(k) + "]" : "";
+          throw ParameterError("schemes", static_cast<int>(i), wrong.value(),
+                               "schemes[" + std::to_string(i) + "]" + which + ": " + wrong.what());
+        }
+      }
+    }
+  });
+  return py::make_tuple(rows, options.grid().samples());
+}
+
+/// Outcomes of motions that were not run.
+py::array not_run(py::ssize_t count) {
+  py::array_t<Outcome> outcomes(count);
+  std::fill_n(outcomes.mutable_data(), count, Outcome::of_nothing());
+  return outcomes;
+}
+
+/// Runs schemes[which[i]] from q0s[i] for every i, without the interpreter's lock.
+Chunk sweep_chunk(const Arm& arm, const Path& path, const Schemes& schemes, const std::vector<std::size_t>& which,
+                  const ArrayLike& q0s, double dt, double hold, const std::string& task, bool motions,
+                  const py::object& limit_options, const py::object& stack_tasks, const Stop& stop) {
+  const Array rows = starts(q0s, arm.dof());
+  if (static_cast<std::size_t>(rows.shape(0)) != which.size()) {
+    throw std::invalid_argument("which and q0s: must have equal lengths");
+  }
+  const MotionOptions options(arm, path, dt, hold, limit_options, stack_tasks);
+  py::array_t<Outcome> outcomes(rows.shape(0));
+  Outcome* const into = outcomes.mutable_data();
+  return arm.visit(task, [&](const auto&, auto space) -> Chunk {
+    using Space = decltype(space);
+    const AnyPath<Space> same = path.as<Space>();
+    std::vector<Job<Space>> jobs;
+    py::typing::List<Arrays> arrays;
+    for (std::size_t i = 0; i < which.size(); ++i) {
+      jobs.push_back({schemes.at(which[i]), row(rows, static_cast<py::ssize_t>(i))});
+      if (motions) {
+        const MotionArrays<Space> whole(options, arm.dof());
+        jobs.back().output = whole.output;
+        arrays.append(whole.all);
+      }
+    }
+    {
+      const py::gil_scoped_release others_may_run;
+      const Sweep<Space> sweep{arm, same, options.grid(), options.limits(), options.stack(), stop.flag};
+      sweep.run(jobs, selected_lanes, into);
+    }
+    return py::make_tuple(outcomes, arrays);
+  });
+}
+
+/// Kinds of lane code that this processor can run, the best kind first.
+std::vector<std::string> processor_kinds() {
+  std::vector<std::string> kinds;
+#if defined(__x86_64__) && defined(__GNUC__)
+  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                      __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
+  if (avx2 && avx512) kinds.emplace_back("avx512");
+  if (avx2) kinds.emplace_back("avx2");
+#endif
+  return kinds;
+}
+
+/// Selects the lane code, or none, and returns the number of motions that run side by side.
+int use_lanes(const py::object& code) {
+  selected_lanes = code.is_none() ? nullptr : static_cast<const LaneCode*>(py::capsule(code).get_pointer());
+  return selected_lanes == nullptr ? 1 : selected_lanes->lanes;
+}
+
+}  // namespace
+
 void bind_sim(py::module_& m) {
+  PYBIND11_NUMPY_DTYPE(MotionSummary<>, max_error, max_orientation_error, peak_velocity, final_velocity,
+                       peak_acceleration, final_acceleration, manipulability);
+  PYBIND11_NUMPY_DTYPE(Outcome, status, samples, time, summary);
+  py::class_<Stop>(m, "Stop", "Stops all motions of a sweep in this process within a sample.")
+      .def(py::init<>())
+      .def(
+          "set", [](Stop& stop) { stop.flag.store(true, std::memory_order_relaxed); }, "Callable from any thread.");
+  const auto none = py::none();
   m.def("rollout", &rollout, py::arg("arm"), py::arg("path"), py::arg("scheme"), py::arg("q0"), py::arg("qd0"),
-        py::arg("dt"), py::arg("hold"), py::arg("task"), py::arg("limit_options") = py::none(),
-        py::arg("stack_tasks") = py::none());
+        py::arg("dt"), py::arg("hold"), py::arg("task"), py::arg("limit_options") = none,
+        py::arg("stack_tasks") = none);
+  m.def("processor_kinds", &processor_kinds);
+  m.def("use_lanes", &use_lanes, py::arg("code"));
+  m.def("check_sweep", &check_sweep, py::arg("arm"), py::arg("path"), py::arg("schemes"), py::arg("q0s"), py::arg("dt"),
+        py::arg("hold"), py::arg("task"), py::arg("limit_options") = none, py::arg("stack_tasks") = none);
+  m.def("not_run", &not_run, py::arg("count"));
+  m.def("sweep_chunk", &sweep_chunk, py::arg("arm"), py::arg("path"), py::arg("schemes"), py::arg("which"),
+        py::arg("q0s"), py::arg("dt"), py::arg("hold"), py::arg("task"), py::arg("motions"), py::arg("limit_options"),
+        py::arg("stack_tasks"), py::arg("stop"));
 }
 
 }  // namespace fpbm::bindings

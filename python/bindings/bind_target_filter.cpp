@@ -1,4 +1,4 @@
-#include "target_filter.hpp"
+#include "sources.hpp"
 
 #include <limits>
 #include <optional>
@@ -17,23 +17,10 @@ Space space_of(const TargetFilter<Space>&) {
 }
 
 /// A wrong shape is an error; the filter rejects invalid numbers.
-template <int Size>
-Vector<Size> any_vector(const ArrayLike& argument, const char* name) {
-  const auto array = real_array(argument, name, 1);
-  if (array.size() != Size) {
-    validation::reject(name, " has " + std::to_string(array.size()) + " entries: must have " + std::to_string(Size));
-  }
-  return Eigen::Map<const Vector<Size>>(array.data());
-}
-
 template <typename Space>
 typename Space::template Point<double> any_point(const ArrayLike& argument, const char* name) {
   if constexpr (std::is_same_v<Space, Pose>) {
-    const auto array = real_array(argument, name, 2);
-    if (array.shape(0) != 4 || array.shape(1) != 4) {
-      validation::reject(name, ": must have shape (4, 4), got " + shape_text(array));
-    }
-    const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> H(array.data());
+    const auto H = matrix<Eigen::Matrix4d>(argument, name, 4, 4, true);
     Transform<> result{H.topRightCorner<3, 1>(), H.topLeftCorner<3, 3>()};
     if (H.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) result.p.setConstant(std::numeric_limits<double>::quiet_NaN());
     return result;

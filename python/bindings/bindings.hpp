@@ -6,15 +6,12 @@ namespace py = pybind11;
 
 namespace fpbm::bindings {
 
-void bind_robot(py::module_& m);
-void bind_arm(py::module_& m);
+void bind_model(py::module_& m);
 void bind_path(py::module_& m);
 void bind_scheme(py::module_& m);
 void bind_limits(py::module_& m);
-void bind_saturation(py::module_& m);
 void bind_clearance(py::module_& m);
 void bind_sim(py::module_& m);
-void bind_sweep(py::module_& m);
 void bind_target_filter(py::module_& m);
 void bind_task(py::module_& m);
 void bind_realtime(py::module_& m);

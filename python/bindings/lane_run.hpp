@@ -56,65 +56,51 @@ template <int N>
 template <typename Space, typename Law>
 void run_level(const ArmInLanes<Space>& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid,
                const std::vector<Law>& laws, const std::vector<Vector<Law::kDof>>& starts,
-               const std::atomic<bool>& stop, Outcome* outcomes) {
+               TrackersInLanes<Space> trackers, const std::atomic<bool>& stop, Outcome* outcomes) {
   constexpr int N = Law::kDof;
   const auto scheme = side_by_side(laws);
-  State<N, InLanes> start{Vector<N, InLanes>::Zero(), Vector<N, InLanes>::Zero()};
-  for (int i = 0; i < N; ++i) start.q(i) = InLanes([&](auto lane) { return starts[lane](i); });
-
   const auto in_lanes = arm.template cast<InLanes>();
-  Summary<Space, N, InLanes> summarise(Law::kLevel);
+  Summary<Space, N, InLanes> summarise(trackers.empty() ? Law::kLevel : Level::kAcceleration);
   const auto record = [&](const Sample<Space, N, InLanes>& sample) noexcept {
     summarise(sample);
     return !stop.load(std::memory_order_relaxed);
   };
-  const auto result = rollout(in_lanes, path, scheme, start, grid, record);
-  const MotionSummary<InLanes> summary = summarise.result();
-  const auto regular = isfinite(result.last.q.sum()) && isfinite(result.last.qd.sum());
-  for (int lane = 0; lane < kLanes; ++lane) {
-    const bool done = result.samples == grid.samples() && regular[static_cast<std::size_t>(lane)];
-    outcomes[lane] = done ? Outcome{static_cast<int>(Status::kOk), result.samples, result.time, lane_of(summary, lane)}
-                          : Outcome::of_nothing();
-  }
-}
-
-/// RunInLanes for trackers of one level, within limits.
-template <typename Space, typename Law>
-void track_level(const ArmInLanes<Space>& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid,
-                 const std::vector<Law>& laws, TrackersInLanes<Space> trackers, const std::atomic<bool>& stop,
-                 Outcome* outcomes) {
-  TrackerBatch batch(arm.template cast<InLanes>(), Space{}, side_by_side(laws), std::move(trackers));
-  Summary<Space, Law::kDof, InLanes> summarise(Level::kAcceleration);
-  const auto record = [&](const Sample<Space, Law::kDof, InLanes>& sample) noexcept {
-    summarise(sample);
-    return !stop.load(std::memory_order_relaxed);
+  // status_of(lane): status of the motion in a lane, if no motion was stopped.
+  const auto write = [&](int samples, double time, const auto& status_of) {
+    const MotionSummary<InLanes> summary = summarise.result();
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const int status = samples == grid.samples() ? status_of(static_cast<std::size_t>(lane)) : Outcome::kNotRun;
+      outcomes[lane] =
+          status == Outcome::kNotRun ? Outcome::of_nothing() : Outcome{status, samples, time, lane_of(summary, lane)};
+    }
   };
-  const int samples = track_batch(batch, path, grid, record);
-  const MotionSummary<InLanes> summary = summarise.result();
-  for (int lane = 0; lane < kLanes; ++lane) {
-    const auto status = static_cast<int>(batch.status()[static_cast<std::size_t>(lane)]);
-    outcomes[lane] = samples == grid.samples()
-                         ? Outcome{status, samples, grid.time(samples - 1), lane_of(summary, lane)}
-                         : Outcome::of_nothing();
+  if (!trackers.empty()) {
+    TrackerBatch batch(in_lanes, Space{}, scheme, std::move(trackers));
+    const int samples = track_batch(batch, path, grid, record);
+    write(samples, grid.time(samples - 1), [&](std::size_t lane) { return static_cast<int>(batch.status()[lane]); });
+    return;
   }
+  State<N, InLanes> start{Vector<N, InLanes>::Zero(), Vector<N, InLanes>::Zero()};
+  for (int i = 0; i < N; ++i) start.q(i) = InLanes([&](auto lane) { return starts[lane](i); });
+  const auto result = rollout(in_lanes, path, scheme, start, grid, record);
+  const auto regular = isfinite(result.last.q.sum()) && isfinite(result.last.qd.sum());
+  write(result.samples, result.time,
+        [&](std::size_t lane) { return regular[lane] ? static_cast<int>(Status::kOk) : Outcome::kNotRun; });
 }
 
 template <typename Space>
 void run_in_lanes(const ArmInLanes<Space>& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid,
                   const SchemesInLanes<Space>& schemes, const std::vector<Vector<ArmInLanes<Space>::kDof>>& starts,
                   TrackersInLanes<Space> trackers, const std::atomic<bool>& stop, Outcome* outcomes) {
-  const auto run = [&](const auto& laws) {
-    if (trackers.empty()) {
-      run_level<Space>(arm, path, grid, laws, starts, stop, outcomes);
-    } else {
-      track_level<Space>(arm, path, grid, laws, std::move(trackers), stop, outcomes);
-    }
-  };
   if (schemes.acceleration.empty()) {
-    run(schemes.velocity);
+    run_level<Space>(arm, path, grid, schemes.velocity, starts, std::move(trackers), stop, outcomes);
   } else {
-    run(schemes.acceleration);
+    run_level<Space>(arm, path, grid, schemes.acceleration, starts, std::move(trackers), stop, outcomes);
   }
 }
+
+// In lane_positions.cpp. Positions and poses are compiled in separate units, which limits the memory of the compiler.
+[[nodiscard]] RunInLanes<Position<2>> plane_in_lanes() noexcept;
+[[nodiscard]] RunInLanes<Position<3>> position_in_lanes() noexcept;
 
 }  // namespace fpbm::bindings

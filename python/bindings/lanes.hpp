@@ -13,8 +13,8 @@
 #include "fpbm/scheme/velocity_scheme.hpp"
 #include "fpbm/simulate/summary.hpp"
 #include "fpbm/simulate/time_grid.hpp"
-#include "lane_tracker.hpp"
-#include "posture_solver.hpp"
+#include "postures.hpp"
+#include "tracker.hpp"
 
 namespace fpbm::bindings {
 
@@ -65,6 +65,6 @@ struct LaneCode {
 };
 
 /// The selected code in lanes, or null.
-[[nodiscard]] const LaneCode* lane_code() noexcept;
+inline const LaneCode* selected_lanes = nullptr;
 
 }  // namespace fpbm::bindings

@@ -1,4 +1,5 @@
 #include "limiter.hpp"
+#include "fpbm/limits/level_saturation.hpp"
 
 namespace fpbm::bindings {
 
@@ -10,6 +11,14 @@ SaturatedMotion<kDynamic> limited_motion(const AnyLimiter& any, const Matrix<kDy
 
 SaturatedMotion<kDynamic> braking_motion(const AnyLimiter& any, const State<kDynamic>& state, const JointVector& last) {
   return std::visit([&](const auto& limiter) { return limiter.brake(state, last); }, any);
+}
+
+Levels saturate(const std::vector<LevelRows>& levels, const Box<kDynamic>& box, const JointVector& rest,
+                const JointVector& unit) {
+  LevelSaturation<kDynamic> saturation(box, rest, unit);
+  std::vector<double> scale;
+  for (const auto& [J, b] : levels) scale.push_back(saturation.resolve(J, b));
+  return {saturation.motion(), scale};
 }
 
 }  // namespace fpbm::bindings

@@ -41,17 +41,9 @@ PYBIND11_MODULE(_core, m) {
   m.doc() = "The compiled part of fpbm_cpp.";
   m.attr("__version__") = FPBM_VERSION;
   py::register_local_exception_translator(&translate);
-  fpbm::bindings::bind_robot(m);
-  fpbm::bindings::bind_arm(m);
-  fpbm::bindings::bind_path(m);
-  fpbm::bindings::bind_scheme(m);
-  fpbm::bindings::bind_clearance(m);
-  fpbm::bindings::bind_sim(m);
-  fpbm::bindings::bind_sweep(m);
-  fpbm::bindings::bind_limits(m);
-  fpbm::bindings::bind_saturation(m);
-  fpbm::bindings::bind_target_filter(m);
-  fpbm::bindings::bind_task(m);
-  fpbm::bindings::bind_realtime(m);
-  fpbm::bindings::bind_inverse(m);
+  using namespace fpbm::bindings;
+  for (auto* const bind : {bind_model, bind_path, bind_scheme, bind_clearance, bind_sim, bind_limits,
+                           bind_target_filter, bind_task, bind_realtime, bind_inverse}) {
+    bind(m);
+  }
 }

@@ -1,4 +1,4 @@
-#include "read_stack.hpp"
+#include "read.hpp"
 
 #include <algorithm>
 #include <array>
@@ -29,16 +29,10 @@ Task task_of_kind(const std::string& name) {
   validation::reject("kind", " = '" + name + "': is not a kind of task");
 }
 
+/// The coordinates of a task of a frame.
 FrameCoordinates coordinates_of(TaskKind kind) {
-  switch (kind) {
-    case TaskKind::kPosition: return FrameCoordinates::kPosition;
-    case TaskKind::kOrientation: return FrameCoordinates::kOrientation;
-    case TaskKind::kPose: return FrameCoordinates::kPose;
-    case TaskKind::kAxis: return FrameCoordinates::kAxis;
-    case TaskKind::kCenterOfMass: return FrameCoordinates::kCenterOfMass;
-    case TaskKind::kPosture: break;
-  }
-  validation::reject("task", ": a posture is not a task of a frame");
+  static_assert(static_cast<int>(TaskKind::kCenterOfMass) == static_cast<int>(FrameCoordinates::kCenterOfMass));
+  return static_cast<FrameCoordinates>(kind);
 }
 
 /// A frame of a robot, at an offset.

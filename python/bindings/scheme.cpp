@@ -1,5 +1,7 @@
 #include "scheme.hpp"
 
+#include "fpbm/objective/manipulability_ascent.hpp"
+
 namespace fpbm::bindings {
 namespace {
 
@@ -39,9 +41,25 @@ EitherScheme<Space> Scheme::plain(const JointLimits<kDynamic>& limits) const {
   return with(any_weights(*this, dof), limits);
 }
 
+template <typename Space>
+EitherScheme<Space> Scheme::make(const AnyArmFor<Space>& arm) const {
+  return std::visit(
+      [&](auto scheme) -> EitherScheme<Space> {
+        using Any = decltype(scheme);
+        if (manipulability_gain != 0.0) scheme = Any(ManipulabilityAscent(scheme, arm, manipulability_gain));
+        scheme.require_dof(arm.dof());
+        return scheme;
+      },
+      plain<Space>(arm.limits()));
+}
+
 template EitherScheme<Position<2>> Scheme::plain(const JointLimits<kDynamic>&) const;
 template EitherScheme<PlanarPose> Scheme::plain(const JointLimits<kDynamic>&) const;
 template EitherScheme<Position<3>> Scheme::plain(const JointLimits<kDynamic>&) const;
 template EitherScheme<Pose> Scheme::plain(const JointLimits<kDynamic>&) const;
+template EitherScheme<Position<2>> Scheme::make(const AnyArm<Position<2>>&) const;
+template EitherScheme<PlanarPose> Scheme::make(const AnyArm<Position<2>>&) const;
+template EitherScheme<Position<3>> Scheme::make(const AnyArm<Position<3>>&) const;
+template EitherScheme<Pose> Scheme::make(const AnyArm<Position<3>>&) const;
 
 }  // namespace fpbm::bindings

@@ -42,17 +42,17 @@ struct Scheme {
   template <typename Space>
   [[nodiscard]] EitherScheme<Space> make(const AnyArmFor<Space>& arm) const;
 
-  /// The scheme for that many joints, without an arm. continuous: bits of the continuous joints.
-  /// Throws std::invalid_argument as make() does, and if an objective needs an arm.
-  template <typename Space>
-  [[nodiscard]] EitherScheme<Space> make_without_arm(Eigen::Index dof, JointBits continuous) const;
-
-  /// The result of make_without_arm(), made once, because the construction takes longer than a call of resolve().
+  /// The scheme for that many joints, without an arm, made once, because the construction takes longer than a call of
+  /// resolve(). continuous: bits of the continuous joints. Throws std::invalid_argument as make() does, and if an
+  /// objective needs an arm.
   template <typename Space>
   [[nodiscard]] const EitherScheme<Space>& kept(Eigen::Index dof, JointBits continuous = 0) const {
     auto& [joints, turning, scheme] = std::get<Kept<Space>>(kept_);  // The caller holds Python's lock.
     if (!scheme || joints != dof || turning != continuous) {
-      scheme = std::make_shared<const EitherScheme<Space>>(make_without_arm<Space>(dof, continuous));
+      if (needs_arm()) validation::reject("scheme", ": has objectives that need an arm: give an arm, not a Kinematics");
+      auto limits = JointLimits<kDynamic>::none(dof);
+      limits.continuous = continuous;
+      scheme = std::make_shared<const EitherScheme<Space>>(plain<Space>(limits));
       joints = dof;
       turning = continuous;
     }

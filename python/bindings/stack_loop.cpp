@@ -8,8 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "read_stack.hpp"
-#include "target_filter.hpp"
+#include "read.hpp"
 
 namespace fpbm::bindings {
 
@@ -35,15 +34,10 @@ std::optional<StackReferences::Source> StackLoop::source_of(const StackTask& tas
   };
   if (py::isinstance<PyFollower>(given)) return same(py::cast<PyFollower&>(given).any, "follower");
   if (py::isinstance<PyTargetFilter>(given)) {
-    const Source source = same(py::cast<PyTargetFilter&>(given).any, "filter");
-    std::visit(
-        [&](auto* each) {
-          if constexpr (!std::is_same_v<decltype(each), AnyFollower<Position<3>>*> &&
-                        !std::is_same_v<decltype(each), AnyFollower<Pose>*>) {
-            if (each->dt() != dt_) validation::fail("filter's dt", each->dt(), "the tracker's dt = ", dt_);
-          }
-        },
-        source);
+    auto& any = py::cast<PyTargetFilter&>(given).any;
+    const Source source = same(any, "filter");
+    const double dt = std::visit([](const auto& each) { return each.dt(); }, any);
+    if (dt != dt_) validation::fail("filter's dt", dt, "the tracker's dt = ", dt_);
     return source;
   }
   return std::nullopt;

@@ -11,7 +11,7 @@
 
 #include "arrays.hpp"
 #include "bounds.hpp"
-#include "path.hpp"
+#include "sources.hpp"
 #include "stack_references.hpp"
 
 namespace fpbm::bindings {

@@ -12,6 +12,7 @@
 
 namespace fpbm::bindings {
 
+/// The coordinates of a frame in the order of FrameCoordinates, or a posture.
 enum class TaskKind { kPosition, kOrientation, kPose, kAxis, kCenterOfMass, kPosture };
 
 /// The compiled part of a task. Attributes of the object in Python do not change the kind.

@@ -3,6 +3,7 @@
 #include <array>
 #include <memory>
 #include <type_traits>
+#include <utility>
 
 #include "bounds.hpp"
 #include "fpbm/any/any_stack.hpp"
@@ -80,6 +81,36 @@ class AnyTracker {
  protected:
   double dt_;
   bool stopping_ = false;
+};
+
+/// A tracker for code in lanes (TrackerBatch): an AnyTracker with a number of joints that is known at compile time. The
+/// functions of the AnyTracker are compiled once for all kinds of processors.
+template <typename Space, int N>
+class LaneTracker {
+  using Any = AnyTracker<Space>;
+
+ public:
+  /// continuous: bits of the continuous joints.
+  LaneTracker(std::unique_ptr<Any> any, JointBits continuous) : continuous_(continuous), any_(std::move(any)) {}
+
+  [[nodiscard]] JointBits continuous() const noexcept { return continuous_; }
+
+  [[nodiscard]] typename Any::Point tip() const noexcept { return any_->tip(); }
+  [[nodiscard]] State<N> state() const noexcept { return {any_->state().q, any_->state().qd}; }
+  [[nodiscard]] Vector<N> acceleration() const noexcept { return any_->acceleration(); }
+  [[nodiscard]] Vector<N> acceleration_change() const noexcept { return any_->acceleration_change(); }
+  bool begin(const Vector<Space::kRows>& error, double length) noexcept { return any_->begin(error, length); }
+  [[nodiscard]] Reference<Space> corrected(const Reference<Space>& reference) const noexcept {
+    return any_->corrected(reference);
+  }
+  Status finish(const Reference<Space>& now, const TickReferences<Space>& references, const Vector<N>& u) noexcept {
+    return any_->finish(now, references, u);
+  }
+  typename Any::Result advance(const TickReferences<Space>& references) noexcept { return any_->advance(references); }
+
+ private:
+  JointBits continuous_;
+  std::unique_ptr<Any> any_;
 };
 
 /// The arguments of a tracker, apart from its arm and scheme.

@@ -4,6 +4,7 @@
 
 #include "fpbm/any/detail/any_path.hpp"
 #include "fpbm/geometry/space.hpp"
+#include "fpbm/target/target_filter.hpp"
 
 namespace fpbm::bindings {
 
@@ -19,6 +20,11 @@ struct Path {
   /// the path.
   template <typename Space>
   [[nodiscard]] AnyPath<Space> as() const;
+};
+
+/// A filter of targets in any task space.
+struct PyTargetFilter {
+  std::variant<TargetFilter<Position<2>>, TargetFilter<PlanarPose>, TargetFilter<Position<3>>, TargetFilter<Pose>> any;
 };
 
 }  // namespace fpbm::bindings
