@@ -26,6 +26,7 @@ from .simulation import make_run, require_motion, task_and_paths
 
 INTERVALS = 600  # Of the joint path: the tip is then within 1e-9 m of most paths.
 MOST_INTERVALS = 9600
+ON_BOUND = 0.99  # Ratio to a bound above which a joint counts as on the bound.
 ON_PATH = 1e-7  # With a larger distance from the path [m, rad], the number of intervals is doubled.
 
 
@@ -48,7 +49,7 @@ def fastest(
     The scheme gives the joint positions along the whole path. The clock of the path then minimises the duration within
     the bounds on velocity, acceleration and jerk of all joints, from rest to rest (docs: Paths in the least time). The
     durations and time laws of shapes have no effect: only the geometry counts. Between the parts of a Sequence, the
-    arm stops.
+    arm stops. run.saturated and run.bound_ratios() show which bounds limit the motion.
 
     Parameters
     ----------
@@ -71,7 +72,9 @@ def fastest(
     """
     require_motion(arm, path, scheme)
     if scheme.level != "velocity":
-        raise wrong("scheme", scheme, f" = {scheme!r:.80}: must be at velocity level, for example MVN() or WMVN(weights)")
+        raise wrong(
+            "scheme", scheme, f" = {scheme!r:.80}: must be at velocity level, for example MVN() or WMVN(weights)"
+        )
     name, kind, followed, tasks = task_and_paths(_smooth_all(path), task, stack)
     options: dict[str, Any] = {
         "dt": float(dt),
@@ -91,11 +94,14 @@ def fastest(
         if failed(code):
             where = np.array2string(arrays["q"], precision=4, separator=", ")
             raise wrong(
-                "path", path, f": can be followed to the fraction {fraction:.3f} only, q = {where}: {message(code)}. {advice(code)}"
+                "path",
+                path,
+                f": can be followed to the fraction {fraction:.3f} only, q = {where}: {message(code)}. {advice(code)}",
             )
         run = make_run(outcome, q0, arm, path, scheme, name, options, fastest)
         if np.abs(run.error).max() < ON_PATH or intervals >= MOST_INTERVALS:
-            return run
+            ratios = run.bound_ratios()
+            return replace(run, saturated=np.max(list(ratios.values()), axis=0) > ON_BOUND)
         intervals *= 2
 
 
