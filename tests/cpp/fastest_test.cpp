@@ -106,7 +106,6 @@ TEST(Fastest, keeps_random_paths_and_all_bounds_by_differences) {
         points.push_back(points.back());
         points.back().p += Vector<3>(random.uniform(3, -0.1, 0.1));
       }
-      // Jerk bounds from those of a Panda to a hundredth of them.
       limits.jerk = JointVector::Constant(7, std::pow(10.0, random.uniform(2.0, 4.0)));
       Motion motion;
       try {

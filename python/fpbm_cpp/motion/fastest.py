@@ -24,7 +24,7 @@ from .run import Run
 from .run_data import Paths
 from .simulation import make_run, require_motion, task_and_paths
 
-INTERVALS = 600  # Of the joint path: the tip is then within 1e-9 m of most paths.
+INTERVALS = 600  # The tip is within 1e-9 m of most paths.
 MOST_INTERVALS = 9600
 ON_BOUND = 0.99  # Ratio to a bound above which a joint counts as on the bound.
 ON_PATH = 1e-7  # With a larger distance from the path [m, rad], the number of intervals is doubled.
