@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -88,13 +89,13 @@ class MotionOptions {
   TimeGrid<double> grid_;
 };
 
-/// Arrays for a motion of n joints.
+/// Arrays for a motion of n joints. limits and stack: null if the motion has none.
 template <typename Space>
 struct MotionArrays {
-  MotionArrays(const MotionOptions& options, py::ssize_t n) {
+  MotionArrays(py::ssize_t samples, py::ssize_t n, const LimitOptions* limits, const StackOptions* stack) {
     using Row = std::vector<py::ssize_t>;
     const auto add = [&](const char* name, auto number, Row shape) {
-      shape.insert(shape.begin(), options.grid().samples());
+      shape.insert(shape.begin(), samples);
       py::array_t<decltype(number)> array(shape);
       all[name] = array;
       return array.mutable_data();
@@ -107,11 +108,10 @@ struct MotionArrays {
                       add("x", 0.0, point),
                       add("x_ref", 0.0, point),
                       add("error", 0.0, {Space::kRows})};
-    const StackOptions* stack = options.stack();
-    if (options.limits() != nullptr) {
+    if (limits != nullptr) {
       output.scale = add("scale", 0.0, {});
       output.saturated = add("saturated", false, {n});
-      if (options.limits()->keeps_clear) output.clearance = add("clearance", 0.0, {});
+      if (limits->keeps_clear) output.clearance = add("clearance", 0.0, {});
       if (stack != nullptr) output.scales = add("scales", 0.0, {stack->plan.levels});
     }
     if (stack != nullptr) output.errors = add("task_errors", 0.0, {stack->plan.error_size()});
@@ -131,7 +131,7 @@ Outcomes rollout(const Model& arm, const Path& path, const Scheme& scheme, const
   return visit_space(arm, task, options.stack() != nullptr, [&](const auto* any, auto space) -> Outcomes {
     using Space = decltype(space);
     const AnyPath<Space> same = path.as<Space>();
-    const MotionArrays<Space> arrays(options, arm.dof());
+    const MotionArrays<Space> arrays(options.grid().samples(), arm.dof(), options.limits(), options.stack());
     const Motion<Space> motion{any, same, scheme, start, options.grid(), options.stack()};
     RolloutResult<kDynamic> result;
     {
@@ -140,6 +140,51 @@ Outcomes rollout(const Model& arm, const Path& path, const Scheme& scheme, const
           options.limits() != nullptr ? motion.track(*options.limits(), arrays.output) : motion.simulate(arrays.output);
     }
     return py::make_tuple(result.status, result.time, result.samples, arrays.all);
+  });
+}
+
+/// A motion along a path in the least time. If the arm cannot follow the path, the time is the time of the path that
+/// can be followed, and there are no samples; q is the last posture.
+Outcomes fastest(const Model& arm, const Path& path, const Scheme& scheme, const ArrayLike& q0, double dt,
+                 int intervals, const std::string& task, const py::object& limits, double tip_speed,
+                 double tip_acceleration, const py::object& bounds, const py::object& stack_tasks) {
+  validation::require_positive("dt", dt);
+  if (!(tip_speed > 0.0)) validation::fail("tip_speed", tip_speed, "positive");
+  if (!(tip_acceleration > 0.0)) validation::fail("tip_acceleration", tip_acceleration, "positive");
+  AnyBounds kept = bounds_of(arm, bounds);
+  const State<kDynamic> start{joint_vector(q0, "q0", arm.dof()), JointVector::Zero(arm.dof())};
+  const std::optional<StackOptions> stack = stack_options_of(stack_tasks, arm, path);
+  const double duration = stack ? stack->duration : path.duration();
+  const TimeGrid<double> nodes(duration, duration / intervals);
+  return visit_space(arm, task, stack.has_value(), [&](const auto* any, auto space) -> Outcomes {
+    using Space = decltype(space);
+    const AnyPath<Space> same = path.as<Space>();
+    RowMajor q(nodes.samples(), arm.dof());
+    Output<Space> output;
+    output.buffers.q = q.data();
+    Motion<Space> motion{any, same, scheme, start, nodes, stack ? &*stack : nullptr};
+    const auto along = motion.simulate(output);
+    if (failed(along.status)) {
+      Arrays last;
+      last["q"] = array_of(along.last.q);
+      return py::make_tuple(along.status, along.time / duration, 0, last);
+    }
+    std::vector<JointVector> rows;
+    for (Eigen::Index i = 0; i < q.rows(); ++i) {
+      rows.emplace_back(q.row(i).transpose());
+      try {
+        kept.require(rows.back());
+      } catch (const std::invalid_argument& error) {
+        validation::reject("path", " at the fraction ", static_cast<double>(i) / intervals, ": ", error.what());
+      }
+    }
+    const auto joints = joint_spline<kDynamic>(rows, duration);
+    const auto clock =
+        motion.clock(joints, limits_of(arm, limits), kept, {dt, intervals, {tip_speed, tip_acceleration}});
+    motion.grid = TimeGrid<double>(clock.duration(), dt);
+    const MotionArrays<Space> arrays(motion.grid.samples(), arm.dof(), nullptr, motion.stack);
+    motion.play(joints, clock, arrays.output);
+    return py::make_tuple(along.status, motion.grid.duration(), motion.grid.samples(), arrays.all);
   });
 }
 
@@ -213,7 +258,7 @@ Chunk sweep_chunk(const Arm& arm, const Path& path, const Schemes& schemes, cons
     for (std::size_t i = 0; i < which.size(); ++i) {
       jobs.push_back({schemes.at(which[i]), row(rows, static_cast<py::ssize_t>(i))});
       if (motions) {
-        const MotionArrays<Space> whole(options, arm.dof());
+        const MotionArrays<Space> whole(options.grid().samples(), arm.dof(), options.limits(), options.stack());
         jobs.back().output = whole.output;
         arrays.append(whole.all);
       }
@@ -260,6 +305,9 @@ void bind_sim(py::module_& m) {
   m.def("rollout", &rollout, py::arg("arm"), py::arg("path"), py::arg("scheme"), py::arg("q0"), py::arg("qd0"),
         py::arg("dt"), py::arg("hold"), py::arg("task"), py::arg("limit_options") = none,
         py::arg("stack_tasks") = none);
+  m.def("fastest", &fastest, py::arg("arm"), py::arg("path"), py::arg("scheme"), py::arg("q0"), py::arg("dt"),
+        py::arg("intervals"), py::arg("task"), py::arg("limits"), py::arg("tip_speed"), py::arg("tip_acceleration"),
+        py::arg("bounds"), py::arg("stack_tasks") = none);
   m.def("processor_kinds", &processor_kinds);
   m.def("use_lanes", &use_lanes, py::arg("code"));
   m.def("check_sweep", &check_sweep, py::arg("arm"), py::arg("path"), py::arg("schemes"), py::arg("q0s"), py::arg("dt"),

@@ -18,6 +18,9 @@ void AnyBounds::gaps(const JointVector& q, double range,
 void AnyBounds::require(const JointVector& q) {
   all_.require(q);
 }
+double AnyBounds::speed_ratio(const JointVector& q, const JointVector& qd) noexcept {
+  return all_.speed_ratio(q, qd);
+}
 JointVector AnyBounds::away(const JointVector& q) noexcept {
   return all_.away(q);
 }

@@ -12,6 +12,12 @@ RolloutResult<kDynamic> Motion<Space>::simulate(const Output<Space>& output) con
   return result;
 }
 
+template <typename Space>
+FastestClock Motion<Space>::clock(const Spline<kDynamic>& joints, const JointLimits<kDynamic>& limits,
+                                  AnyBounds& bounds, const FastestOptions& options) const {
+  return fastest_clock(joints, path, limits, bounds, options);
+}
+
 template struct Motion<Position<2>>;
 template struct Motion<PlanarPose>;
 template struct Motion<Position<3>>;

@@ -5,6 +5,7 @@
 #include "bounds.hpp"
 #include "fpbm/any/detail/any_path.hpp"
 #include "fpbm/simulate/detail/motion.hpp"
+#include "fpbm/simulate/fastest.hpp"
 #include "fpbm/simulate/rollout.hpp"
 #include "fpbm/simulate/summary.hpp"
 #include "scheme.hpp"
@@ -83,6 +84,11 @@ struct Motion {
   /// fpbm::track() of the motion. Throws std::invalid_argument if scheme, start, limits, options or bounds do not
   /// fit.
   RolloutResult<kDynamic> track(const LimitOptions& limit_options, const Output<Space>& output) const;
+
+  /// fastest_clock() and play() of the motion, for joint positions along the path.
+  FastestClock clock(const Spline<kDynamic>& joints, const JointLimits<kDynamic>& limits, AnyBounds& bounds,
+                     const FastestOptions& options) const;
+  void play(const Spline<kDynamic>& joints, const FastestClock& clock, const Output<Space>& output) const;
 
   /// The tracker of the motion, for an arm of N joints. Throws as track() does.
   template <int N>

@@ -155,6 +155,16 @@ RolloutResult<kDynamic> Motion<Space>::simulate_stack(const Output<Space>& outpu
 }
 
 template <typename Space>
+void Motion<Space>::play(const Spline<kDynamic>& joints, const FastestClock& clock, const Output<Space>& output) const {
+  if (stack == nullptr) {
+    fpbm::play(*arm, path, joints, clock, grid, Recorder<Space>(output, Level::kAcceleration));
+  } else {
+    fpbm::play(stack->plan.arm_at(scheme.level), StackPath{*stack}, joints, clock, grid,
+               TaskRecorder<Space>(*this, output, Level::kAcceleration));
+  }
+}
+
+template <typename Space>
 template <int N>
 LaneTracker<Space, N> Motion<Space>::tracker(const LimitOptions& limit_options) const {
   return {tracker_of<Space>(*arm, *this, limit_options), continuous_joints(*arm, limit_options.limits)};

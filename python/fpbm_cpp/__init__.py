@@ -34,6 +34,7 @@ from .errors import ParameterError, ResolutionError, UrdfWarning
 from .io.run_file import load
 from .joints import *
 from .motion.comparison import Comparison, comparison
+from .motion.fastest import fastest
 from .motion.run import Run
 from .motion.run_data import RunStatus
 from .motion.simulation import simulate, track
@@ -49,7 +50,7 @@ from .tuning import TuneInterrupted, Tuning, tune
 from .viewer import servo, view
 
 __all__ = ["Run", "RunStatus", "Sweep", "Tuning", "load", "simulate", "sweep", "track", "tune"]
-__all__ += ["Comparison", "comparison", "servo", "view"]
+__all__ += ["Comparison", "comparison", "fastest", "servo", "view"]
 __all__ += ["Capsule", "Clearance", "Cuboid", "HalfSpace", "Nearest"]
 __all__ += ["InverseKinematics", "PathFailure", "Posture", "Postures", "StartPosture", "start_posture"]
 __all__ += ["Kinematics", "Limiter", "PathFollower", "SaturatedMotion", "Status", "TargetFilter", "Tick"]

@@ -16,6 +16,7 @@ from .._core import Status, __version__, processor_kinds
 from ..arms import PlanarArm
 from ..errors import not_one_of
 from ..files import write_whole
+from ..motion.fastest import fastest
 from ..motion.run import Run
 from ..motion.run_data import ARRAYS, LIMITED, OF_STACKS, RunStatus
 from ..motion.simulation import simulate, track
@@ -26,7 +27,7 @@ from ..tasks import TASKS
 
 FORMAT = "fpbm_cpp run"
 KINDS: dict[str, Makers] = {"arm": ROBOTS, "path": EVERY_PATH, "scheme": SCHEMES}
-FUNCTIONS = {each.__name__: each for each in (simulate, track)}  # Functions that make runs, by name.
+FUNCTIONS = {each.__name__: each for each in (simulate, track, fastest)}  # Functions that make runs, by name.
 VERSION = 3  # Version of the format; incremented for each new format.
 
 

@@ -39,7 +39,8 @@ class Run(RunData):
         End of the motion, and the arguments that produced it; options are the other keyword arguments: dt, hold, stack,
         ... task is 'position' or 'pose'; for a stack, the name of the task of x, x_ref and error.
     scale, saturated : numpy.ndarray, shapes (N,) and (N, n), or None
-        Of track() only: the task scale, from 0 (the arm brakes) to 1 (the whole task), and which joints are on a bound.
+        Of track(): the task scale, from 0 (the arm brakes) to 1 (the whole task), and which joints are on a bound.
+        fastest() has only `saturated`: joints within 1 % of a bound on velocity, acceleration or jerk.
     clearance : numpy.ndarray, shape (N,), or None
         Of track() with a clearance: distance between the two nearest shapes [m].
     scales : numpy.ndarray, shape (N, levels), or None
@@ -49,7 +50,7 @@ class Run(RunData):
     provenance : dict
         Of a run from a file: date, machine and versions that produced the run, with its note and seed.
     function : function or None
-        simulate or track, which made the run from these arguments.
+        simulate, track or fastest, which made the run from these arguments.
     """
 
     def plot(self, *, panels: str | Sequence[str] | None = None, dark: bool = False, bounds: bool = False) -> Figure:
@@ -74,7 +75,9 @@ class Run(RunData):
         Raises ValueError if no function of this package made the run.
         """
         if self.function is None:
-            raise ValueError("run: must be a result of simulate(), track() or sweep(): make the run with one of them")
+            raise ValueError(
+                "run: must be a result of simulate(), track(), fastest() or sweep(): make the run with one of them"
+            )
         try:
             again: Run = self.function(self.arm, self.path, self.scheme, self.q0, task=self.task, **self.options)
         except ResolutionError as stopped:

@@ -201,6 +201,19 @@ class RunData:
         """The joint limits given to track(); otherwise the limits of the arm."""
         return self.options.get("limits") or self.arm.limits
 
+    def bound_ratios(self) -> dict[str, Array]:
+        """Ratios of the velocity, acceleration and jerk of each joint to their bounds in run.limits, shape (N, n) each.
+
+        The jerk of a sample is the difference to the acceleration of the next sample; 0 at the last sample, and without
+        a bound on jerk.
+        """
+        limits = self.limits
+        steps = np.diff(self.t)[:, None]
+        jerk = np.zeros_like(self.qdd)
+        jerk[:-1] = np.diff(self.qdd, axis=0) / steps
+        motions = {"velocity": self.qd, "acceleration": self.qdd, "jerk": jerk}
+        return {name: np.abs(motion) / getattr(limits, name) for name, motion in motions.items()}
+
     def manipulability(self) -> Array:
         """sqrt(det(J J')) of the tip, shape (N,): 0 in a singular posture (Yoshikawa, 1985).
 

@@ -31,6 +31,7 @@ namespace fpbm {
 ///   accepts(from, stop)        whether the tick and the stop after the tick, from the state `from`, keep the bound
 ///                              (Stop); true for a bound without a certificate
 ///   gaps(q, range, f)          for InverseKinematics only: calls f(gap, gradient) for each gap below the range in q
+///   speed_ratio(q, qd)         for fastest() only, of a bound on speeds: largest ratio of a speed to its bound
 ///
 /// rows() and accepts() are noexcept, and rows() is called first in each tick. All state of a bound is allocated at
 /// construction.
@@ -121,6 +122,19 @@ class Bounds {
     each([&](auto& bound) noexcept {
       if (!bound.empty()) bound.gaps(q, range, f);
     });
+  }
+
+  /// Largest ratio of a speed to its bound at the joint velocities qd in the posture q, of bounds on speeds.
+  template <typename JointVector>
+  [[nodiscard]] auto speed_ratio(const JointVector& q, const JointVector& qd) noexcept {
+    typename JointVector::Scalar largest(0);
+    each([&](auto& bound) noexcept {
+      if constexpr (kHas<std::decay_t<decltype(bound)>, bound_member::SpeedRatio, JointVector>) {
+        const auto ratio = bound.speed_ratio(q, qd);
+        if (ratio > largest) largest = ratio;
+      }
+    });
+    return largest;
   }
 
   /// Sum of the distances to shapes that are near [m], of bounds that know shapes. While the arm is at rest, the sum

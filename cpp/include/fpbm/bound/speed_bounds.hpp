@@ -58,6 +58,17 @@ class SpeedBounds {
     if (next.least_fraction < Scalar(1)) add_rows(next, next.least_fraction, most, rows);
   }
 
+  /// Largest ratio of a speed to its bound.
+  [[nodiscard]] Scalar speed_ratio(const JointVector& q, const JointVector& qd) noexcept {
+    placed_.place(q);
+    Scalar largest(0);
+    for (const Speed& speed : speeds_) {
+      const Scalar ratio = velocity(speed, qd).norm() / speed.most;
+      if (ratio > largest) largest = ratio;
+    }
+    return largest;
+  }
+
   /// No posture is beyond a bound on speed.
   template <typename F>
   void gaps(const JointVector&, Scalar, const F&) const noexcept {}
@@ -92,20 +103,26 @@ class SpeedBounds {
     const JointVector final = constant + g * fraction * next.u;
     placed_.place(JointVector(next.state.q + h / Scalar(2) * (qd + final)));
     for (const Speed& speed : speeds_) {
-      const auto gradient = [&](const Vector<3, Scalar>& n) noexcept {
-        return placed_.robot.drives().by_drive(placed_.gradient(n, speed.x));
-      };
-      Vector<3, Scalar> v = Vector<3, Scalar>::Zero();
-      for (int axis = 0; axis < 3; ++axis) {
-        if (!speed.rows[static_cast<std::size_t>(axis)]) continue;
-        v(axis) = gradient(Vector<3, Scalar>::Unit(axis)).dot(final);
-      }
+      const Vector<3, Scalar> v = velocity(speed, final);
       const Scalar size = v.norm();
       if (!(size > speed.most) || rows.count == most) continue;
-      const JointVector row = gradient(v / size);
+      const JointVector row = gradient(speed, v / size);
       rows.g.col(rows.count) = g * row;
       rows.b(rows.count++) = speed.most - row.dot(constant);
     }
+  }
+
+  [[nodiscard]] JointVector gradient(const Speed& speed, const Vector<3, Scalar>& n) const noexcept {
+    return placed_.robot.drives().by_drive(placed_.gradient(n, speed.x));
+  }
+  /// Velocity over the bounded coordinates at the joint velocities qd, in the posture that placed_ has.
+  [[nodiscard]] Vector<3, Scalar> velocity(const Speed& speed, const JointVector& qd) const noexcept {
+    Vector<3, Scalar> v = Vector<3, Scalar>::Zero();
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!speed.rows[static_cast<std::size_t>(axis)]) continue;
+      v(axis) = gradient(speed, Vector<3, Scalar>::Unit(axis)).dot(qd);
+    }
+    return v;
   }
 
   PlacedRobot<N, Scalar, Joints> placed_;

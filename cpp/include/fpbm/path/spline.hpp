@@ -26,8 +26,10 @@ class Spline {
   };
 
   /// At least two points, at strictly increasing times [s].
-  Spline(const std::vector<Point>& points, const std::vector<Scalar>& times) : times_(times), knots_(points.size()) {
-    for (std::size_t i = 0; i < points.size(); ++i) knots_[i].x = points[i];
+  Spline(const std::vector<Point>& points, const std::vector<Scalar>& times) : times_(times) {
+    const Point rest = filled<Point>(points[0].size());
+    knots_.reserve(points.size());
+    for (const Point& point : points) knots_.push_back({point, rest, rest});
     solve();
   }
 
@@ -42,8 +44,8 @@ class Spline {
     const Scalar h = times_[i + 1] - times_[i];
     const Scalar u = std::clamp((t - times_[i]) / h, Scalar(0), Scalar(1));
     const Scalar s = u * h;
-    Sample sample;
-    for (int j = 0; j < M; ++j) {  // Scalars compile in a third of the time of vectors.
+    Sample sample{a.x, a.x, a.x};
+    for (Eigen::Index j = 0; j < a.x.size(); ++j) {  // Scalars compile in a third of the time of vectors.
       const auto [c3, c4, c5] = higher(a, b, h, j);
       sample.x(j) = a.x(j) + s * (a.xd(j) + s / 2 * a.xdd(j)) + u * u * u * (c3 + u * (c4 + u * c5));
       sample.xd(j) = a.xd(j) + s * a.xdd(j) + u * u / h * (3 * c3 + u * (4 * c4 + u * (5 * c5)));
@@ -57,8 +59,8 @@ class Spline {
     const Scalar h = times_[i + 1] - times_[i];
     const Scalar u = (t - times_[i]) / h;
     const Sample here = at(t);
-    std::array<Point, 6> result{here.x, here.xd, here.xdd};
-    for (int j = 0; j < M; ++j) {
+    std::array<Point, 6> result{here.x, here.xd, here.xdd, here.x, here.x, here.x};
+    for (Eigen::Index j = 0; j < here.x.size(); ++j) {
       const auto [c3, c4, c5] = higher(knots_[i], knots_[i + 1], h, j);
       result[3](j) = (6 * c3 + u * (24 * c4 + u * (60 * c5))) / (h * h * h);
       result[4](j) = (24 * c4 + u * (120 * c5)) / (h * h * h * h);
@@ -69,13 +71,13 @@ class Spline {
 
  private:
   struct Knot {
-    Point x = Point::Zero();
-    Point xd = Point::Zero();
-    Point xdd = Point::Zero();
+    Point x;
+    Point xd;
+    Point xdd;
   };
 
   /// Coefficients of u³, u⁴ and u⁵ in coordinate j of the piece between two knots with the time difference h [s].
-  static std::array<Scalar, 3> higher(const Knot& a, const Knot& b, Scalar h, int j) noexcept {
+  static std::array<Scalar, 3> higher(const Knot& a, const Knot& b, Scalar h, Eigen::Index j) noexcept {
     // Differences at b from the Taylor polynomial at a.
     const Scalar x = b.x(j) - (a.x(j) + h * (a.xd(j) + h / 2 * a.xdd(j)));
     const Scalar xd = h * (b.xd(j) - (a.xd(j) + h * a.xdd(j)));
@@ -99,7 +101,7 @@ class Spline {
       Block diagonal = ends(h) + begins(g);
       const Point before = (knots_[i + 1].x - knots_[i].x) / (h * h * h);
       const Point after = (knots_[i + 2].x - knots_[i + 1].x) / (g * g * g);
-      Rates right;
+      Rates right(2, before.size());
       right.row(0) = 360 * (before / h + after / g).transpose();
       right.row(1) = 60 * (after - before).transpose();
       if (i > 0) {

@@ -22,6 +22,10 @@ using Accepts = decltype(bool{
 template <typename Bound, typename JointVector, typename F>
 using Gaps = decltype(std::declval<Bound&>().gaps(std::declval<const JointVector&>(), typename JointVector::Scalar(),
                                                   std::declval<const F&>()));
+/// Member of a bound on speeds.
+template <typename Bound, typename JointVector>
+using SpeedRatio = decltype(std::declval<Bound&>().speed_ratio(std::declval<const JointVector&>(),
+                                                               std::declval<const JointVector&>()));
 /// Member of a bound that knows shapes, as a Clearance. The bound also has near_distance_sum() and away(q).
 template <typename Bound>
 using MovesAway = decltype(std::declval<const Bound&>().moves_away());

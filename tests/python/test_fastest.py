@@ -1,0 +1,142 @@
+"""Motions in the least time: on the path, within every bound by differences, and repeatable."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fpbm_cpp as fp
+
+PANDA = fp.SerialArm.preset("panda")
+BENT = np.array([0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785])
+CIRCLE = fp.Circle(0.15, 2.0).in_plane("yz")
+MVN = fp.MVN()
+
+
+def ratios(run: fp.Run) -> list[float]:
+    """Largest ratios of velocity, acceleration and jerk to their bounds, by differences of positions at rest around."""
+    limits, step = run.limits, run.options["dt"]
+    q = np.vstack([run.q[:1]] * 3 + [run.q] + [run.q[-1:]] * 3)
+    bounds = (limits.velocity, limits.acceleration, np.inf if limits.jerk is None else limits.jerk)
+    return [float(np.max(np.abs(np.diff(q, k, axis=0)) / step**k / bound)) for k, bound in enumerate(bounds, 1)]
+
+
+def assert_kept(run: fp.Run) -> None:
+    assert run.status and run.status.code is fp.Status.OK
+    assert max(ratios(run)) <= 1 + 1e-9
+    assert np.abs(run.error).max() < 1e-6
+    np.testing.assert_allclose(np.diff(run.t), run.options["dt"], rtol=1e-9)
+    assert np.all((run.q >= run.limits.lower) & (run.q <= run.limits.upper))
+
+
+@pytest.mark.parametrize("name", ["panda", "fr3", "iiwa14", "gen3", "ur5e", "ur10e", "xarm7"])
+def test_random_paths_are_kept_within_all_bounds(name):
+    arm = fp.SerialArm.preset(name)
+    random = np.random.default_rng(2)
+    low, high = np.maximum(arm.limits.lower, -2.5), np.minimum(arm.limits.upper, 2.5)
+    kept = 0
+    for _ in range(40):
+        q0 = low + (high - low) * random.uniform(0.3, 0.7, arm.dof)
+        points = np.cumsum(np.vstack([np.zeros(3), random.normal(0, 0.05, (random.integers(2, 6), 3))]), axis=0)
+        try:
+            run = fp.fastest(arm, fp.Waypoints(points, duration=1), MVN, q0, task="pose" if arm.dof > 6 else "position")
+        except fp.ParameterError as error:
+            assert "followed to the fraction" in str(error) or "leaves the range" in str(error)
+            continue
+        assert_kept(run)
+        assert max(ratios(run)) > 0.95
+        kept += 1
+        if kept == 3:
+            return
+    pytest.fail("too few paths could be followed")
+
+
+def test_the_circle_that_a_tracker_leaves_is_kept():
+    """A tracker leaves this circle in 1.5 s by 13 cm, and the fastest motion without bounds on jerk takes 1.19 s."""
+    run = fp.fastest(PANDA, CIRCLE, MVN, BENT, task="pose")
+    assert_kept(run)
+    assert 1.185 <= run.t[-1] <= 1.2
+    assert run.saturated is not None
+    assert run.saturated.any(axis=1).mean() > 0.9
+    tracked = fp.track(PANDA, fp.Circle(0.15, 1.5, time_law="quintic").in_plane("yz"), MVN, BENT, task="pose")
+    assert tracked.max_error() > 0.01
+
+
+@pytest.mark.parametrize("dt", [1e-3, 4e-3, 1 / 500, 0.01])
+def test_the_motion_lasts_a_multiple_of_the_step(dt):
+    run = fp.fastest(PANDA, CIRCLE, MVN, BENT, task="pose", dt=dt)
+    assert_kept(run)
+    np.testing.assert_allclose(run.t[-1] / dt, len(run.t) - 1, rtol=1e-12)
+
+
+def test_only_the_geometry_of_a_path_counts():
+    times = [
+        fp.fastest(PANDA, path.in_plane("yz"), MVN, BENT).t[-1]
+        for path in (fp.Circle(0.1, 1.0), fp.Circle(0.1, 7.0), fp.Circle(0.1, 3.0, time_law="constant_speed"))
+    ]
+    np.testing.assert_allclose(times, times[0], atol=1.1e-3)
+
+
+def test_bounds_on_the_tip_and_on_a_frame():
+    run = fp.fastest(PANDA, CIRCLE, MVN, BENT, task="pose", tip_speed=0.3, tip_acceleration=1.0)
+    assert_kept(run)
+    x = run.positions
+    assert 0.29 < np.linalg.norm(np.diff(x, axis=0), axis=1).max() / 1e-3 <= 0.3 + 1e-9
+    assert 0.98 < np.linalg.norm(np.diff(x, 2, axis=0), axis=1).max() / 1e-6 <= 1 + 1e-6
+    slow = fp.TaskBounds(fp.PositionTask(), velocity=0.3)
+    run = fp.fastest(PANDA, CIRCLE, MVN, BENT, task="pose", bounds=[slow])
+    assert_kept(run)
+    assert 0.29 < np.linalg.norm(np.diff(run.positions, axis=0), axis=1).max() / 1e-3 <= 0.3 + 1e-9
+
+
+def test_a_sequence_stops_between_its_paths():
+    path = fp.Line((0.1, 0, 0), 1.0).then(fp.Line((0, 0.1, 0), 1.0))
+    run = fp.fastest(PANDA, path, MVN, BENT)
+    assert_kept(run)
+    corner = np.argmin(np.linalg.norm(run.x - (run.x[0] + [0.1, 0, 0]), axis=1))
+    assert np.abs(run.qd[corner - 1 : corner + 2]).max() < 0.05
+
+
+def test_two_arms_share_one_clock():
+    robot = fp.Robot.preset("two_pandas")
+    q0 = np.concatenate([BENT, BENT])
+    stack = fp.Stack([fp.PoseTask("left_tip", name="left"), fp.PoseTask("right_tip", name="right")])
+    paths = {"left": fp.Circle(0.1, 1.0).in_plane("yz"), "right": fp.Line((0.0, 0.05, 0.1), 1.0)}
+    run = fp.fastest(robot, paths, MVN, q0, stack=stack)
+    assert_kept(run)
+    assert max(np.abs(each).max() for each in run.errors.values()) < 1e-6
+    alone = fp.fastest(robot, {"left": paths["left"]}, MVN, q0, stack=stack)
+    assert alone.t[-1] <= run.t[-1] + 1e-3
+
+
+def test_a_run_is_saved_replayed_and_drawn(tmp_path):
+    run = fp.fastest(PANDA, CIRCLE, MVN, BENT, task="pose", tip_speed=0.5)
+    assert run.replay() == run
+    run.save(tmp_path / "run.npz")
+    again = fp.load(tmp_path / "run.npz")
+    assert again == run and again.replay() == run
+    run.to_csv(tmp_path / "run.csv")
+    assert len((tmp_path / "run.csv").read_text().splitlines()) == len(run.t) + 1
+    pytest.importorskip("matplotlib")
+    run.plot().savefig(tmp_path / "run.png")
+
+
+def test_what_has_no_answer_is_refused_with_the_place():
+    def refused(text: str, *args, **options):
+        with pytest.raises(fp.ParameterError, match=text):
+            fp.fastest(PANDA, *args, BENT, **{"task": "pose", **options})
+
+    refused("velocity level", CIRCLE, fp.MAN())
+    refused(r"fraction 0\.\d+ only, q = ", fp.Circle(0.6, 1.0).in_plane("yz"), MVN)
+    refused("has no length", fp.Line((0, 0, 0), 1.0), MVN)
+    refused("tip_speed = -1", CIRCLE, MVN, tip_speed=-1)
+    refused("dt = 0", CIRCLE, MVN, dt=0)
+    refused(
+        "path at the fraction .*lower y", CIRCLE, MVN, bounds=[fp.TaskBounds(fp.PositionTask(rows=("y",)), lower=-0.2)]
+    )
+    narrow = replace(PANDA.limits, upper=[2.8, 1.7, 2.8, -2.19, 2.8, 3.7, 2.8])
+    refused("leaves the range of joint 3", CIRCLE, MVN, limits=narrow)
+    open_ended = replace(PANDA.limits, acceleration=np.inf, jerk=None)
+    refused("limits.acceleration", CIRCLE, MVN, limits=open_ended)
