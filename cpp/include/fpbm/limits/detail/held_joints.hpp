@@ -79,6 +79,7 @@ class HeldJoints {
     }
     const auto rows = extent<Motion::RowsAtCompileTime>(Z.rows());
     for (Eigen::Index k = 0; k < dimensions; ++k) {
+      if (change_.coeff(k) == Scalar(0)) continue;  // A column of joints that are independent of the held joints.
       subtract_multiple(rate.data(), -change_.coeff(k), Z.data() + k * rows, rows);
     }
     for (int j = 0; j < count_; ++j) rate(held_[j].joint) = Scalar(0);

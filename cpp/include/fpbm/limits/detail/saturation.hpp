@@ -45,7 +45,7 @@ class NullSpaceSaturation {
   }
 
   /// Saturation in the null space of task levels, whose rows are in the units of the joints.
-  NullSpaceSaturation(const LevelSpace<N, Scalar>& space, const JointVector& unit,
+  NullSpaceSaturation(LevelSpace<N, Scalar>& space, const JointVector& unit,
                       const Rows<N, P, Scalar>& rows = {}) noexcept
       : unit_(unit), rows_(rows) {
     const Eigen::Index n = space.size();

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <tuple>
+#include <type_traits>
 
 #include "fpbm/limits/detail/saturation.hpp"
 #include "fpbm/limits/detail/task_levels.hpp"
@@ -92,7 +93,7 @@ class StackSaturation {
     if constexpr (kLevels > 1) space.add(in_units(first, unit));
     return space;
   }
-  [[nodiscard]] static First first_saturation(const FirstRows& first, const LevelSpace<N, Scalar>& space,
+  [[nodiscard]] static First first_saturation(const FirstRows& first, LevelSpace<N, Scalar>& space,
                                               const JointVector& unit, const Rows<N, P, Scalar>& rows) noexcept {
     if constexpr (kLevels == 1) {
       return {first, unit, rows};
@@ -107,9 +108,16 @@ class StackSaturation {
                                        const JointVector& v) const noexcept {
     const LevelRows scaled = in_units(rows, unit_);
     const JointVector in_unit = v.cwiseQuotient(unit_);
+    constexpr Scalar kRadius = kLevelRadius<Scalar>;
+    if constexpr (std::is_same_v<LevelRows, DiagonalLevel<N, Scalar>>) {
+      // A posture without lost directions determines the motion: p cancels.
+      DampedLevel<N, Scalar> damped(kRadius * kRadius);
+      const auto level = scaled_level(scaled, product(scaled, in_unit));
+      if (!damped.loses(level.J.least())) return space.add(level.J, level.r, damped);
+    }
     const JointVector projected = space.project(in_unit);
     const auto level = scaled_level(scaled, product(scaled, JointVector(in_unit - projected)));
-    DampedLevel<decltype(level.r)::RowsAtCompileTime, Scalar> damped(kLevelRadius<Scalar> * kLevelRadius<Scalar>);
+    DampedLevel<decltype(level.r)::RowsAtCompileTime, Scalar> damped(kRadius * kRadius);
     return projected + space.add(level.J, level.r, damped);
   }
 

@@ -46,33 +46,26 @@ template <typename Matrix>
   return true;
 }
 
-/// y = Z (ZᵀD²Z)⁻¹ ZᵀD r, which minimises |D y − r| over the span of the columns of Z. Z has at most n columns, which
-/// are orthonormal.
-///
-/// The modified Gram-Schmidt method makes the columns of D Z orthogonal. The columns of Z are then conjugate: zᵢᵀD²zⱼ =
-/// 0.
+/// y = Z (ZᵀD²Z)⁻¹ ZᵀD r, which minimises |D y − r| over the span of the columns of Z, which are orthonormal. D y is
+/// the projection of r on the columns of D Z, which the modified Gram-Schmidt method makes orthogonal.
 template <int N, typename Scalar, typename Basis>
-[[nodiscard]] Vector<N, Scalar> solve_diagonal(Basis Z, const Vector<N, Scalar>& D, Vector<N, Scalar> r) noexcept {
+[[nodiscard]] Vector<N, Scalar> solve_diagonal(Basis Z, const Vector<N, Scalar>& D,
+                                               const Vector<N, Scalar>& r) noexcept {
   const Eigen::Index n = Z.rows();
-  Basis DZ = Z;
   auto squares = filled<Vector<N, Scalar>>(n);
-  auto y = filled<Vector<N, Scalar>>(n);
+  Vector<N, Scalar> left = r;
   for (Eigen::Index j = 0; j < Z.cols(); ++j) {
-    Scalar* const z = Z.data() + j * n;
-    Scalar* const column = DZ.data() + j * n;
+    Scalar* const column = Z.data() + j * n;
     for (Eigen::Index i = 0; i < n; ++i) column[i] *= D.coeff(i);
-    for (Eigen::Index k = 0; k < j; ++k) {
-      const Scalar* const other = DZ.data() + k * n;
-      const Scalar coefficient = column_dot(other, column, n) / squares.coeff(k);
-      subtract_multiple(column, coefficient, other, n);
-      subtract_multiple(z, coefficient, Z.data() + k * n, n);
-    }
+    const auto remove_from = [&](Scalar* v, Eigen::Index k) noexcept {
+      const Scalar along = column_dot<Scalar>(Z.data() + k * n, v, n);
+      if (along != Scalar(0)) subtract_multiple(v, along / squares.coeff(k), Z.data() + k * n, n);
+    };
+    for (Eigen::Index k = 0; k < j; ++k) remove_from(column, k);
     squares.coeffRef(j) = squared_length(column, n);
-    const Scalar coefficient = column_dot<Scalar>(column, r.data(), n) / squares.coeff(j);
-    subtract_multiple<Scalar>(r.data(), coefficient, column, n);
-    subtract_multiple<Scalar>(y.data(), -coefficient, z, n);
+    remove_from(left.data(), j);
   }
-  return y;
+  return entrywise(r, [&](Eigen::Index i) { return (r.coeff(i) - left.coeff(i)) / D.coeff(i); });
 }
 
 }  // namespace fpbm

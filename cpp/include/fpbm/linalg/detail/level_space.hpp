@@ -102,16 +102,12 @@ class LevelSpace {
     return x;
   }
 
-  /// Z, n × (n − rank).
-  [[nodiscard]] Basis basis() const noexcept {
-    Basis Z;
-    Z.resize(size(), size() - rank());
-    for (Eigen::Index j = 0; j < Z.cols(); ++j) {
-      Scalar* const z = Z.data() + j * size();
-      for (Eigen::Index i = 0; i < size(); ++i) z[i] = Scalar(i == rank() + j ? 1 : 0);
-      Q_.apply(z);
-    }
-    return Z;
+  /// Z, n × (n − rank), computed once for each rank.
+  [[nodiscard]] const Basis& basis() noexcept {
+    if (Z_.rows() == size() && Z_.cols() == size() - rank()) return Z_;
+    Z_.resize(size(), size() - rank());
+    for (Eigen::Index j = 0; j < Z_.cols(); ++j) Q_.column(rank() + j, Z_.data() + j * size());
+    return Z_;
   }
 
  private:
@@ -180,6 +176,7 @@ class LevelSpace {
   }
 
   Reflections<N, Scalar> Q_;
+  Basis Z_;  ///< Set by basis().
 };
 
 }  // namespace fpbm

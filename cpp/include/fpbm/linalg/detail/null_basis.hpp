@@ -6,6 +6,7 @@
 
 #include "fpbm/core/detail/unrolled.hpp"
 #include "fpbm/core/types.hpp"
+#include "fpbm/linalg/detail/column_sums.hpp"
 
 namespace fpbm {
 
@@ -65,10 +66,12 @@ class RowSpace {
   void column(Eigen::Index j, Column&& out) const noexcept {
     for (Eigen::Index i = 0; i < V_.rows(); ++i) out(i) = Scalar(0);
     out(j) = Scalar(1);
+    Eigen::Index count = rank_;  // The last reflections do not change e_j if entry j of their v is zero.
+    while (count > 0 && V_.coeff(j, count - 1) == Scalar(0)) --count;
     const auto m = extent<kM>(V_.cols());
     each(Constant<0>{}, m, [&](auto from_last) {
       const Eigen::Index k = m - 1 - from_last;
-      if (k < rank_) reflect(k, out);
+      if (k < count) reflect(k, out);
     });
   }
 
@@ -90,10 +93,16 @@ class RowSpace {
   template <typename Index, typename Column>
   void reflect(Index k, Column&& x) const noexcept {
     const auto n = extent<kN>(V_.rows());
-    Scalar along = Scalar(0);
-    each(k, n, [&](Eigen::Index i) { along += V_.coeff(i, k) * x.coeff(i); });
-    along *= beta_.coeff(k);
-    each(k, n, [&](Eigen::Index i) { x.coeffRef(i) -= along * V_.coeff(i, k); });
+    if constexpr (kUnrolls) {
+      Scalar along = Scalar(0);
+      each(k, n, [&](Eigen::Index i) { along += V_.coeff(i, k) * x.coeff(i); });
+      along *= beta_.coeff(k);
+      each(k, n, [&](Eigen::Index i) { x.coeffRef(i) -= along * V_.coeff(i, k); });
+    } else {
+      const Scalar* const v = V_.data() + k * n + k;
+      const Scalar along = beta_.coeff(k) * column_dot<Scalar>(v, x.data() + k, n - k);
+      subtract_multiple<Scalar>(x.data() + k, along, v, n - k);
+    }
   }
 
   Matrix<N, M, Scalar> V_;  ///< Column k becomes the vector v of the k-th reflection, from row k on.

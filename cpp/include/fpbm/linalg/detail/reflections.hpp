@@ -62,6 +62,14 @@ class Reflections {
   void apply(Scalar* x) const noexcept {
     for (Eigen::Index k = count_; k-- > 0;) reflect(k, x);
   }
+  /// x becomes column j of Q. The last reflections do not change e_j if entry j of their v is zero, for example because
+  /// no row depends on joint j.
+  void column(Eigen::Index j, Scalar* x) const noexcept {
+    for (Eigen::Index i = 0; i < size(); ++i) x[i] = Scalar(i == j ? 1 : 0);
+    Eigen::Index k = count_;
+    while (k > 0 && V_.coeff(j, k - 1) == Scalar(0)) --k;
+    while (k-- > 0) reflect(k, x);
+  }
   /// x becomes Qᵀx.
   void apply_transposed(Scalar* x) const noexcept {
     for (Eigen::Index k = 0; k < count_; ++k) reflect(k, x);
