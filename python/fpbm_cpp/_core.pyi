@@ -41,6 +41,7 @@ __all__: list[str] = [
     "circle",
     "dh",
     "failed",
+    "fastest",
     "in_plane",
     "line",
     "link_frames",
@@ -1030,6 +1031,20 @@ def failed(status: Status) -> bool:
     Whether the status means that there is no result.
     """
 
+def fastest(
+    arm: Model,
+    path: Path,
+    scheme: Scheme,
+    q0: numpy.typing.ArrayLike,
+    dt: typing.SupportsFloat | typing.SupportsIndex,
+    intervals: typing.SupportsInt | typing.SupportsIndex,
+    task: str,
+    limits: typing.Any,
+    tip_speed: typing.SupportsFloat | typing.SupportsIndex,
+    tip_acceleration: typing.SupportsFloat | typing.SupportsIndex,
+    bounds: typing.Any,
+    stack_tasks: typing.Any = None,
+) -> tuple[Status, float, int, dict[str, numpy.ndarray]]: ...
 def in_plane(path: Path, axes: numpy.typing.ArrayLike) -> Path: ...
 def line(
     displacement: numpy.typing.ArrayLike, duration: typing.SupportsFloat | typing.SupportsIndex, time_law: str

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from html import escape
 from typing import Any
 
@@ -39,14 +39,22 @@ def _point(pose: Any) -> str:
     return short(pose[:3, 3] if pose.shape == (4, 4) else pose, 4)
 
 
-REPRS: dict[type, Callable[[Any], str]] = {
-    Tracker: lambda it: f"<Tracker of {len(it.q)} joints: q = {short(it.q, 4)}, tip at {_point(it.tip)}>",
-    Tick: lambda it: (
-        f"<Tick: {it.status.name}{'' if it.scale is None else f', scale {it.scale:.3g}'}, q = {short(it.q, 4)}, "
-        f"error {short(it.error)}>"
-    ),
-    TargetFilter: lambda it: f"<TargetFilter: x at {_point(it.x)}, xd = {short(it.xd, 4)}>",
-    PathFollower: lambda it: f"<PathFollower: {'done' if it.done else 'on its path'}>",
-}
-for _kind, _text in REPRS.items():
-    _kind.__repr__ = _text  # type: ignore[method-assign, assignment]
+def _tracker(self: Tracker) -> str:
+    return f"<Tracker of {len(self.q)} joints: q = {short(self.q, 4)}, tip at {_point(self.tip)}>"
+
+
+def _tick(self: Tick) -> str:
+    scale = "" if self.scale is None else f", scale {self.scale:.3g}"
+    return f"<Tick: {self.status.name}{scale}, q = {short(self.q, 4)}, error {short(self.error)}>"
+
+
+def _filter(self: TargetFilter) -> str:
+    return f"<TargetFilter: x at {_point(self.x)}, xd = {short(self.xd, 4)}>"
+
+
+def _follower(self: PathFollower) -> str:
+    return f"<PathFollower: {'done' if self.done else 'on its path'}>"
+
+
+for _kind, _text in ((Tracker, _tracker), (Tick, _tick), (TargetFilter, _filter), (PathFollower, _follower)):
+    _kind.__repr__ = _text  # type: ignore[method-assign]
