@@ -61,6 +61,30 @@ def examples(name: str) -> list[str]:
     return [line.split("  # ")[0].strip() for line in re.findall(r"fpbm-cpp .*", epilog)]
 
 
+def test_fastest_keeps_the_path_and_writes_its_run(tmp_path):
+    out = tmp_path / "fast"
+    printed = call("fastest", "panda", "--radius", "0.1", "--tip-speed", "0.3", "--out", str(out), "--also", "csv")
+    assert printed.exit_code == 0, printed.output
+    assert "panda, circle, mvn" in printed.output
+    run = fp.load(out / "run.npz")
+    assert run.function is fp.fastest
+    assert f"complete, t = {run.t[-1]:g} s" in printed.output
+    assert run.max_error() < 1e-7
+    again = call("fastest", "--job", str(out / "job.toml"), "--tip-speed", "0.3", "--out", str(tmp_path / "again"))
+    assert again.exit_code == 0, again.output
+    np.testing.assert_array_equal(fp.load(tmp_path / "again" / "run.npz").q, run.q)
+    assert {each.name for each in out.iterdir()} == {"run.png", "run.npz", "run.csv", "job.toml"}
+
+
+def test_fastest_selects_a_scheme_at_velocity_level():
+    assert "panda, circle, wmvn" in call("fastest", "panda", "--weights", "1,2,1,2,1,2,1").output
+    assert "panda, circle, mvn" in call("fastest", "panda", "--k", "2").output
+    assert "must be at velocity level" in error_of("fastest", "panda", "--scheme", "man")
+    assert "can be followed to the fraction" in error_of("fastest", "panda", "--radius", "0.6")
+    assert "tip_speed = -2" in error_of("fastest", "panda", "--tip-speed", "-2")
+    assert "--also needs --out" in call("fastest", "panda", "--also", "csv").output
+
+
 @pytest.fixture(autouse=True)
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)

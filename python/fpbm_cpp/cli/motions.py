@@ -1,4 +1,4 @@
-"""Commands that run a motion: track, compare, view, servo."""
+"""Commands that run a motion: track, fastest, compare, view, servo."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -7,8 +7,10 @@ from pathlib import Path
 import click
 
 from ..errors import not_one_of
+from ..job import Motion
 from ..job.sections import job_errors
 from ..motion.comparison import comparison
+from ..motion.run import Run
 from ..schemes import SCHEMES
 from .plain import Writer, dark_option, import_viser, out_option, picture, write_files
 from .request import Request, motion_command
@@ -18,7 +20,12 @@ port_option = click.option(
     "--port", type=click.IntRange(0, 65535), default=8080, help="Port of the page; 0 selects a free port."
 )
 browser_option = click.option("--browser/--no-browser", default=True, help="Whether to open the page in the browser.")
-ALSO = click.Choice(["csv", "rosbag", "gif", "mp4"])
+also_option = click.option(
+    "--also",
+    multiple=True,
+    type=click.Choice(["csv", "rosbag", "gif", "mp4"]),
+    help="Also write this file to the folder; can be repeated.",
+)
 
 
 @motion_command(
@@ -33,7 +40,7 @@ ALSO = click.Choice(["csv", "rosbag", "gif", "mp4"])
 )
 @out_option
 @dark_option
-@click.option("--also", multiple=True, type=ALSO, help="Also write this file to the folder; can be repeated.")
+@also_option
 def track(request: Request, out: Path | None, dark: bool, also: tuple[str, ...]) -> None:
     """Move an arm along a path, and print key figures of the motion.
 
@@ -48,11 +55,53 @@ def track(request: Request, out: Path | None, dark: bool, also: tuple[str, ...])
     With --out, the folder gets run.png, run.npz, which fpbm_cpp.load reads, and job.toml, which contains all options.
     If the motion stops early, the exit status is 1, and the motion before the stop is still printed and written.
     """
-    if also and out is None:
-        raise click.UsageError("--also needs --out DIR.")
+    _require_out(out, also)
     motion = request.motion(limited=request.file is None)
     with request.plain():
         run = motion.run()
+    _report(request, motion, run, out, dark, also)
+
+
+@motion_command(
+    "Move an arm along a path in the least time.",
+    """
+    fpbm-cpp fastest panda --radius 0.15 --task pose
+    fpbm-cpp fastest ur5e --path lissajous --tip-speed 0.25 --out fast
+    fpbm-cpp fastest --job job.toml --scheme wmvn --weights 1,2,1,2,1,2,1""",
+    clear=True,
+)
+@click.option("--tip-speed", type=float, metavar="NUMBER", help="Largest speed of the tip.  [m/s]")
+@click.option("--tip-acceleration", type=float, metavar="NUMBER", help="Largest acceleration of the tip.  [m/s^2]")
+@out_option
+@dark_option
+@also_option
+def fastest(
+    request: Request,
+    tip_speed: float | None,
+    tip_acceleration: float | None,
+    out: Path | None,
+    dark: bool,
+    also: tuple[str, ...],
+) -> None:
+    """Move an arm along a path in the least time within its limits, and print key figures of the motion.
+
+    The tip stays on the path, as in fpbm_cpp.fastest: the duration is a result, and the duration, the time law and the
+    hold of a job have no effect. The scheme is at velocity level, by default mvn. For ARM and the options, see track.
+    """
+    _require_out(out, also)
+    motion = request.motion(request.scheme_of_velocity, at_rest=True, limited=True)
+    with request.plain():
+        run = motion.fastest(tip_speed=tip_speed, tip_acceleration=tip_acceleration)
+    _report(request, motion, run, out, dark, also)
+
+
+def _require_out(out: Path | None, also: tuple[str, ...]) -> None:
+    if also and out is None:
+        raise click.UsageError("--also needs --out DIR.")
+
+
+def _report(request: Request, motion: Motion, run: Run, out: Path | None, dark: bool, also: tuple[str, ...]) -> None:
+    """Print the key figures of a run, and write its files."""
     request.say(motion)
     click.echo(summary(run))
     if out is not None:

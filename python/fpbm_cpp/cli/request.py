@@ -185,6 +185,7 @@ class Request:
         for option in sorted(given, key=lambda each: (each.key != "kind", each.key == "task")):
             self._put(option, given[option])
         names = {f"{option.section}.{option.key}": option for option in values}
+        self.chosen = "scheme.kind" in said or names.get("scheme.kind") in given  # Whether the scheme is not a default.
         self.flags = {key: each.opts[0] for key, each in names.items() if each in given or key not in said}
         if isinstance(self.table.get("task"), list) and names["run.task"] in given:
             self.flags["run.frame"] = "--task"  # The option --task constructs the tasks.
@@ -194,6 +195,11 @@ class Request:
         """The requested kind of scheme."""
         given = self.table.get("scheme")
         return str(given.get("kind")) if isinstance(given, dict) else FREE["scheme"]
+
+    @property
+    def scheme_of_velocity(self) -> str | None:
+        """The scheme for a command that needs a scheme at velocity level; None if the job or the options have one."""
+        return None if self.chosen else "wmvn" if "weights" in self.table.get("scheme", {}) else "mvn"
 
     def motion(self, kind: str | None = None, *, at_rest: bool = False, limited: bool = False) -> Motion:
         """The motion, with this kind of scheme if given.

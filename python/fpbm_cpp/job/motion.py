@@ -21,6 +21,7 @@ from ..bounds import Bound
 from ..errors import not_one_of, wrong
 from ..files import write_whole
 from ..joints import JointLimits
+from ..motion.fastest import fastest
 from ..motion.run import Run
 from ..motion.run_data import Paths
 from ..motion.simulation import simulate, task_and_paths, track
@@ -143,6 +144,23 @@ class Motion:
                 return track(self.arm, self.path, self.scheme, self.q0, bounds=self.bounds, **keywords)
             del keywords["limits"]
             return simulate(self.arm, self.path, self.scheme, self.q0, partial=True, **keywords)
+
+    def fastest(self, **tip: float | None) -> Run:
+        """Run the motion by fastest(). tip: bounds tip_speed and tip_acceleration."""
+        options = self.options
+        with job_errors():
+            return fastest(
+                self.arm,
+                self.path,
+                self.scheme,
+                self.q0,
+                dt=options.dt,
+                task=options.task,
+                stack=self.stack,
+                limits=self.limits,
+                bounds=self.bounds,
+                **tip,
+            )
 
 
 def prepare(job: Table) -> Motion:
