@@ -17,7 +17,7 @@ BENCHMARK := /usr/include/benchmark/benchmark.h:libbenchmark-dev
 CXX_SOURCES = $(shell find cpp python tests bench examples web ros2 -name '*.[ch]pp')
 
 .DELETE_ON_ERROR:
-.PHONY: help demo page test homes test-cpp test-python test-docs test-view clang sanitize nightly arm64 arm64-wheel windows macos cross firmware packages fuzz soak motions grasp inverse peers lint \
+.PHONY: help demo page test homes test-cpp test-python test-docs test-view clang sanitize nightly arm64 arm64-wheel windows macos cross firmware packages fuzz soak motions grasp inverse fastest peers lint \
         prose format stubs docs notebooks bench count stalls worst sdist wheel clean
 
 help:
@@ -38,6 +38,7 @@ help:
 	@echo 'make motions          10,000 random motions of stacks of tasks: bounds, and rest'
 	@echo 'make grasp            10,000 motions of a tray in two arms, and a few by Pink, Mink, PlaCo and roboplan'
 	@echo 'make inverse          inverse kinematics: solved poses and times, compared with other libraries'
+	@echo 'make fastest          motions in the least time: bounds, distance from the path, comparison with TOPP-RA'
 	@echo 'make peers            the programs of docs/coming_from.md, in environments of their own'
 	@echo 'make fuzz             look for input that breaks the tracker, for SECONDS=$(SECONDS)'
 	@echo 'make lint             formatting, static analysis, imports, types, stubs, spelling, terms to avoid'
@@ -167,6 +168,11 @@ inverse: $(VENV)/package $(VENV)/test $(VENV)/peers
 	$(BIN)/python bench/inverse_peers.py --write
 	$(BIN)/python bench/inverse_problems.py
 	$(BIN)/python bench/inverse_clearance.py
+
+# The table of docs/paths.md: motions in the least time, compared with TOPP-RA. Needs a few minutes.
+fastest: $(VENV)/package $(VENV)/test
+	$(BIN)/python -m pip install --quiet --no-compile --group toppra
+	$(BIN)/python bench/fastest.py --count 170
 
 # Programs of other libraries, compared with programs of this library. Each library is installed into build/stack_peers.
 peers: $(VENV)/package $(VENV)/test

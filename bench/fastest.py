@@ -7,7 +7,6 @@ orientation (position tasks with 6 joints). Paths that leave the workspace or th
    distance from the path, and processor time of fp.fastest() per second of motion.
 2. TOPP-RA (`pip install toppra`) on the same joint paths and bounds: without bounds on jerk, and the duration with
    bounds on jerk relative to the duration of TOPP-RA, which has no bounds on jerk.
-3. Ruckig (`pip install ruckig`): point-to-point motions of one joint, with bounds on jerk.
 """
 
 from __future__ import annotations

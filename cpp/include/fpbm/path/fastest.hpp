@@ -55,7 +55,7 @@ class FastestClock {
     constexpr int kRounds = 2;
     constexpr double kExcess = 1e-4;
     constexpr int kChecks = 8;
-    // Between the checks, the excess is smaller than kSafety in 6,000 random motions (bench/fastest.py).
+    // Between the checks, most random motions exceed no bound by more than kSafety.
     constexpr double kSafety = 2e-4;
     double slower = 1.0;
     for (int round = 0; round < kRounds; ++round) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -34,10 +35,37 @@ template <int N>
   return Spline<N>(q, p);
 }
 
-/// The clock of FastestClock for joint positions along a path, slowed so that the motion lasts a multiple of dt.
-/// bounds: Bounds that hold in each posture of the spline; bounds on speeds bound the clock. Throws
-/// std::invalid_argument as FastestClock and the bounds do, and unless the path begins and ends at rest with zero
-/// acceleration.
+/// The factor by which a clock must be slower, so that the differences of positions at every dt [s] keep the bounds on
+/// velocity, acceleration and jerk.
+template <int N>
+[[nodiscard]] double excess_of_differences(const Spline<N>& joints, const FastestClock& clock,
+                                           const JointLimits<N>& limits, double dt) {
+  const JointLimits<N> complete = limits.complete();
+  const auto ratio = [](const Vector<N>& difference, const Vector<N>& bound) {
+    return difference.cwiseAbs().cwiseQuotient(bound).maxCoeff();
+  };
+  // Before its start and after its end, the motion is at rest.
+  Vector<N> q = joints.at(clock.at(0.0).s).x;
+  Vector<N> velocity = filled<Vector<N>>(q.size());
+  Vector<N> acceleration = velocity;
+  double excess = 0.0;
+  const auto ticks = static_cast<int>(std::lround(clock.duration() / dt));
+  for (int k = 1; k <= ticks + 2; ++k) {
+    const Vector<N> next = joints.at(clock.at(k * dt).s).x;
+    const Vector<N> v = (next - q) / dt;
+    const Vector<N> a = (v - velocity) / dt;
+    excess = std::max({excess, ratio(v, complete.velocity), std::sqrt(ratio(a, complete.acceleration)),
+                       std::cbrt(ratio((a - acceleration) / dt, complete.jerk))});
+    q = next;
+    velocity = v;
+    acceleration = a;
+  }
+  return excess;
+}
+
+/// The clock of FastestClock for joint positions along a path, slowed so that the motion lasts a multiple of dt and
+/// keeps the bounds by differences. bounds: Bounds, of which the bounds on speeds bound the clock. Throws
+/// std::invalid_argument as FastestClock does, and unless the path begins and ends at rest with zero acceleration.
 template <int N, typename Path, typename Kept>
 [[nodiscard]] FastestClock fastest_clock(const Spline<N>& joints, const Path& path, const JointLimits<N>& limits,
                                          Kept& bounds, const FastestOptions& options) {
@@ -59,7 +87,17 @@ template <int N, typename Path, typename Kept>
     place.add_tip(at.xd.template head<kLinear>(), at.xdd.template head<kLinear>(), tip.velocity, tip.acceleration);
   };
   FastestClock clock(joints, limits, add);
-  clock.stretch(std::ceil(clock.duration() / options.dt) * options.dt);
+  const auto stretch = [&](double factor) {
+    clock.stretch(std::ceil(factor * clock.duration() / options.dt) * options.dt);
+  };
+  stretch(1.0);
+  // Few motions exceed a bound between the checks of FastestClock. After one round, no random motion does.
+  constexpr int kRounds = 5;
+  for (int round = 0; round < kRounds; ++round) {
+    const double excess = excess_of_differences(joints, clock, limits, options.dt);
+    if (!(excess > 1.0)) break;
+    stretch(excess);
+  }
   return clock;
 }
 
