@@ -10,6 +10,7 @@ import os
 import sys
 import xml.etree.ElementTree as ET
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -126,6 +127,32 @@ def test_libfranka_rejects_no_command(motion):
     assert max(shares.values()) <= ROUNDING
     assert shares["velocity"] > 0.1  # The arm moved.
     assert shares["jerk"] < 0.2  # Unfiltered targets would exceed the bound.
+
+
+def test_libfranka_rejects_no_fastest_motion():
+    """With a margin of A^2/(2 J) for the condition "approach": A^2/(2 J) is the velocity in which A fades to zero."""
+    margin = EPS + ACCELERATION**2 / (2 * JERK)
+    limits = replace(
+        example.LIMITS,
+        lower=joint_limits("limit", "lower"),
+        upper=joint_limits("limit", "upper"),
+        velocity=joint_limits("limit", "velocity") - margin,
+        velocity_offset=joint_limits("position_based_velocity_limits", "velocity_offset") + margin,
+        deceleration=joint_limits("position_based_velocity_limits", "deceleration_limit"),
+    )
+    start = [0, -0.785, 0, -2.356, 0, 1.571, 0.785]
+    random = np.random.default_rng(1)
+    cycles, peak = 0, 0.0
+    while cycles < 6000:
+        points = np.cumsum(np.vstack([np.zeros(3), random.normal(0, 0.12, (5, 3))]), axis=0)
+        try:
+            run = fp.fastest(example.ARM, fp.Waypoints(points, duration=1), fp.MVN(), start, limits=limits)
+        except fp.ParameterError:
+            continue  # The path leaves the workspace, or a joint its range.
+        assert violated_conditions(*from_rest_to_rest(np.arange(len(run.q)), run.q)) == set()
+        cycles += len(run.q)
+        peak = max(peak, run.bound_ratios()["velocity"].max())
+    assert peak > 0.99
 
 
 def test_a_tick_is_the_robots_millisecond(motion):
