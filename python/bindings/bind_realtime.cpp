@@ -241,9 +241,22 @@ void bind_tick(py::module_& m) {
 void bind_follower(py::module_& m) {
   const auto visit = [](auto visitor) { return [visitor](PyFollower& self) { return std::visit(visitor, self.any); }; };
   py::class_<PyFollower>(m, "PathFollower",
-                         "A path from the tip, with a clock that can pause and resume; the result of Tracker.follow.")
+                         "A path from the tip, with a clock that can pause, resume and run slower; the result of "
+                         "Tracker.follow.")
       .def("pause", visit([](auto& follower) { follower.pause(); }), "Stops on the path within the ramp time.")
       .def("resume", visit([](auto& follower) { follower.resume(); }), "Continues along the path.")
+      .def(
+          "set_speed",
+          [](PyFollower& self, double fraction) {
+            if (!std::visit([&](auto& follower) { return follower.set_speed(fraction); }, self.any)) {
+              validation::fail("fraction", fraction, "in (0, 1]");
+            }
+          },
+          py::arg("fraction"),
+          "Changes the speed to a fraction in (0, 1] of the path's speed, within the ramp time; during a pause, after "
+          "resume().")
+      .def_property_readonly("speed", visit([](auto& follower) { return follower.speed(); }),
+                             "Fraction of the path's speed that set_speed has set.")
       .def_property_readonly("time", visit([](auto& follower) { return follower.time(); }), "Path time [s].")
       .def_property_readonly("done", visit([](auto& follower) { return follower.done(); }),
                              "Whether path time is at the path's end.");

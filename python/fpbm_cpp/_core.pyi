@@ -634,7 +634,7 @@ class Tick:
 
 class PathFollower:
     """
-    A path from the tip, with a clock that can pause and resume; the result of Tracker.follow.
+    A path from the tip, with a clock that can pause, resume and run slower; the result of Tracker.follow.
     """
     def __repr__(self) -> str: ...
     def pause(self) -> None:
@@ -645,10 +645,19 @@ class PathFollower:
         """
         Continues along the path.
         """
+    def set_speed(self, fraction: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        """
+        Changes the speed to a fraction in (0, 1] of the path's speed, within the ramp time; during a pause, after resume().
+        """
     @property
     def done(self) -> bool:
         """
         Whether path time is at the path's end.
+        """
+    @property
+    def speed(self) -> float:
+        """
+        Fraction of the path's speed that set_speed has set.
         """
     @property
     def time(self) -> float:

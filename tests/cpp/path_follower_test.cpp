@@ -46,12 +46,12 @@ using Scalars = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(PathFollowers, Scalars, );
 
 /// Random calls, more often within a ramp than after it. The rate stays between 0 and 1, and neither the rate nor its
-/// derivative jumps: |ṙ| ≤ 1.5/ramp and |r̈| ≤ 8/ramp² for all calls.
+/// derivative jumps: |ṙ| ≤ 4/3/ramp and |r̈| ≤ 16/3/ramp² for all calls.
 TYPED_TEST(PathFollowers, keep_their_rate_within_0_and_1) {
   Random random(11);
   for (const double ramp : {0.01, 0.125, 0.5, 2.0}) {
-    const double slope = 1.5 / ramp;
-    const double bend = 8.0 / (ramp * ramp);
+    const double slope = 4.0 / 3.0 / ramp;
+    const double bend = 16.0 / 3.0 / (ramp * ramp);
     const double dt = ramp / 128.0;
     for (int sequence = 0; sequence < trials(100); ++sequence) {
       auto one = follower(static_cast<TypeParam>(ramp));
@@ -61,7 +61,9 @@ TYPED_TEST(PathFollowers, keep_their_rate_within_0_and_1) {
         const std::string where =
             "ramp " + std::to_string(ramp) + ", sequence " + std::to_string(sequence) + ", tick " + std::to_string(i);
         if (random.uniform(0.0, 1.0) < often) {
-          random.uniform(0.0, 1.0) < 0.5 ? one.pause() : one.resume();
+          const double choice = random.uniform(0.0, 1.0);
+          if (choice < 0.4) one.set_speed(static_cast<TypeParam>(random.uniform(0.01, 1.0)));
+          choice < 0.7 ? one.resume() : one.pause();
           const Clock after = clock_of(one);
           ASSERT_EQ(after.p, before.p) << where;
           ASSERT_NEAR(after.r, before.r, 4.0 * this->kEpsilon) << where;
@@ -137,6 +139,30 @@ TYPED_TEST(PathFollowers, complete_transitions_within_1_25_ramps) {
       one.advance(TypeParam(1));
       EXPECT_NEAR(clock_of(one).p - there, target, 64.0 * this->kEpsilon);
     }
+  }
+}
+
+/// The clock runs at the fraction of set_speed() after a ramp; a pause keeps the fraction, and invalid fractions have
+/// no effect.
+TYPED_TEST(PathFollowers, run_at_a_fraction_of_their_speed) {
+  auto one = follower(TypeParam(0.5));
+  for (const double fraction : {0.25, 1.0, 0.5, 0.125}) {
+    EXPECT_TRUE(one.set_speed(static_cast<TypeParam>(fraction)));
+    for (const double wrong : {0.0, -1.0, 1.5, std::nan("")})
+      EXPECT_FALSE(one.set_speed(static_cast<TypeParam>(wrong)));
+    EXPECT_EQ(static_cast<double>(one.speed()), fraction);
+    one.advance(TypeParam(0.5));
+    EXPECT_EQ(clock_of(one).r, fraction);
+    one.pause();
+    one.advance(TypeParam(0.5));
+    EXPECT_EQ(clock_of(one).r, 0.0);
+    one.set_speed(TypeParam(1));
+    one.set_speed(static_cast<TypeParam>(fraction));
+    one.advance(TypeParam(0.5));
+    EXPECT_EQ(clock_of(one).r, 0.0) << "paused";
+    one.resume();
+    one.advance(TypeParam(0.5));
+    EXPECT_EQ(clock_of(one).r, fraction);
   }
 }
 

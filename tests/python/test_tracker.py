@@ -113,6 +113,29 @@ def test_saturation_finds_the_task_feasible_when_a_solver_does(case, panda):
     assert agreed >= 0.99 * feasible
 
 
+def test_an_operator_changes_the_speed_on_the_path(panda, settling):
+    """The tip stays on the path, at the fraction of its speed after the ramp; wrong fractions have no effect."""
+    tracker = fp.Tracker(panda, settling, BENT, task="pose")
+    start = tracker.tip[:3, 3].copy()
+    follower = tracker.follow(fp.Circle(0.1, 5.0, time_law="quintic").in_plane("yz"), ramp=0.4)
+    assert follower.speed == 1.0
+    random = np.random.default_rng(4)
+    error = 0.0
+    while not follower.done:
+        if random.random() < 0.002:
+            follower.set_speed(random.uniform(0.05, 1.0))
+        tick = tracker.tick(follower)
+        assert tick.status is fp.Status.OK
+        error = max(error, np.abs(tick.error).max())
+    assert error < 1e-6
+    np.testing.assert_allclose(tracker.tip[:3, 3], start, atol=1e-6)
+    for wrong in (0, -1, 1.01, np.nan, np.inf):
+        before = follower.speed
+        with pytest.raises(fp.ParameterError, match="fraction = "):
+            follower.set_speed(wrong)
+        assert follower.speed == before
+
+
 def test_a_path_is_followed_paused_resumed_and_finished(panda, settling):
     tracker = fp.Tracker(panda, settling, BENT, task="pose")
     follower = tracker.follow(fp.Circle(0.05, 2.0).in_plane("yz"), ramp=0.2)
