@@ -253,6 +253,22 @@ def test_a_scheme_that_is_set_runs_once(viewer, monkeypatch):
     assert len(runs) == 1
 
 
+def test_the_fastest_motion_stays_the_fastest_under_another_scheme():
+    arm = fp.SerialArm.preset("panda")
+    run = fp.fastest(arm, fp.Circle(0.1, 5.0).in_plane("yz"), fp.MVN(), [0, -0.3, 0, -2.2, 0, 2, 0.785], tip_speed=0.5)
+    shown = viewer_module.Viewer(run, port=0, open_browser=False)
+    try:
+        assert shown.run is run
+        shown.scheme = fp.WMVN([5, 1, 1, 1, 1, 1, 1])
+        assert shown.run.function is fp.fastest
+        assert shown.run.max_error() < 1e-6
+        assert np.abs(shown.run.q - run.q).max() > 0.01
+        with pytest.raises(ValueError, match="velocity level"):
+            shown.scheme = fp.MAN()
+    finally:
+        shown.close()
+
+
 def test_gains_beyond_a_slider_extend_its_range(viewer):
     viewer.scheme = fp.FPBM(0.6, [0.01, 1, 1, 400], 300, 9000)
     sliders = viewer._controls._sliders

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 
 from ..bounds import clearance_among
+from ..motion.fastest import fastest
 from ..motion.run import Run
 from ..motion.simulation import simulate, track
 from ..schemes import Scheme
@@ -39,12 +40,16 @@ class Viewer(Page):
         self._first = run
         self._asked: tuple[Scheme, bool] | None = None  # The shown choice; None after a failed choice on the page.
         gui = self._server.gui
+        is_fastest = run.function is fastest
         duration = max(path.duration for path in run.paths.values()) + run.options.get("hold", 0.0)
+        if is_fastest:
+            duration = float(run.t[-1])
         with self._lock:  # The first events of the page wait until all parts exist.
             self._readout = Readout(gui)
             self._player = Player(gui, duration, self._draw)
-            limits, gains = (run.limits, run.scale is not None), run.stack is None
-            self._controls = Controls(gui, run.arm, run.scheme, self._on_change, *limits, gains=gains)
+            limits = None if is_fastest else run.limits  # The fastest motion always keeps its limits.
+            limited, gains = run.scale is not None, run.stack is None
+            self._controls = Controls(gui, run.arm, run.scheme, self._on_change, limits, limited, gains=gains)
             self._chart = Chart(gui, playback, duration)
             self._scene = RunScene(self._server, playback, meshes, self._bounds)
             self._show(run)
@@ -114,6 +119,9 @@ class Viewer(Page):
 
 def rerun(run: Run, scheme: Scheme, limited: bool) -> Run:
     """The motion of a run under another scheme; if limited, within the run's or the arm's limits. Raises ValueError."""
+    if run.function is fastest:
+        again: Run = fastest(run.arm, run.path, scheme, run.q0, task=run.task, **run.options)
+        return again
     if limited:
         return track(run.arm, run.path, scheme, run.q0, task=run.task, **run.options)
     options = {name: run.options[name] for name in ("dt", "hold", "qd0", "stack") if name in run.options}
