@@ -7,6 +7,7 @@ orientation (position tasks with 6 joints). Paths that leave the workspace or th
    distance from the path, and processor time of fp.fastest() per second of motion.
 2. TOPP-RA (`pip install toppra`) on the same joint paths and bounds: without bounds on jerk, and the duration with
    bounds on jerk relative to the duration of TOPP-RA, which has no bounds on jerk.
+3. Weights: the duration under WMVN with the weights 1/A^2, A the bounds on acceleration, relative to MVN.
 """
 
 from __future__ import annotations
@@ -84,6 +85,17 @@ def toppra_duration(run: fp.Run) -> float:
     return float(np.sum(2.0 * np.diff(even) / (sd[1:] + sd[:-1])))
 
 
+def duration_with_weights(run: fp.Run, weights: Array) -> float:
+    """Duration of the motion under WMVN [s]; NaN if WMVN does not follow the path within the ranges."""
+    try:
+        again = fp.fastest(
+            run.arm, run.path, fp.WMVN(weights / weights.min()), run.q0, dt=DT, task=run.task, limits=run.limits
+        )
+    except fp.ParameterError:
+        return float("nan")
+    return float(again.t[-1])
+
+
 def print_table(headings: list[str], rows: list[list[Any]]) -> None:
     print("| " + " | ".join(headings) + " |\n|" + "---|" * len(headings))
     for row in rows:
@@ -106,7 +118,8 @@ def main() -> int:
             worst[name].append([*ratios(run), np.abs(run.error).max(), 1e3 * seconds, run.t[-1]])
             loose = fp.fastest(arm, run.path, run.scheme, run.q0, dt=DT, task=run.task, limits=free)
             reference = toppra_duration(loose)
-            against[name].append([loose.t[-1] / reference, run.t[-1] / reference])
+            weighted = duration_with_weights(run, 1.0 / bounded.acceleration**2)
+            against[name].append([loose.t[-1] / reference, run.t[-1] / reference, weighted / run.t[-1]])
     rows = []
     for name, found in worst.items():
         v, a, j, off, ms, duration = np.array(found).T
@@ -118,9 +131,10 @@ def main() -> int:
     print()
     rows = []
     for name, pairs in against.items():
-        loose, bounded_ratio = np.array(pairs).T
-        rows.append([name, *(f"{np.median(x):.3f}, {x.max():.3f}" for x in (loose, bounded_ratio))])
-    print_table(["arm", "without jerk bounds / TOPP-RA: median, largest", "with jerk bounds / TOPP-RA without"], rows)
+        *peers, weighted = np.array(pairs).T
+        rows.append([name, *(f"{np.median(x):.3f}, {x.max():.3f}" for x in peers), f"{np.nanmedian(weighted):.3f}"])
+    head = ["arm", "without jerk bounds / TOPP-RA: median, largest", "with jerk bounds / TOPP-RA without"]
+    print_table([*head, "weights / MVN: median"], rows)
     return 0
 
 
