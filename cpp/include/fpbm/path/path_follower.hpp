@@ -40,7 +40,7 @@ class PathFollower {
   /// Repeated calls have no effect.
   void pause() noexcept { change_rate(Scalar(0)); }
   void resume() noexcept { change_rate(speed_); }
-  /// Changes the speed to a fraction of the speed of the path, at once or, during a pause, after resume(). If the
+  /// Changes the speed to a fraction of the speed of the path within a ramp; during a pause, after resume(). If the
   /// fraction is not in (0, 1], returns false without an effect.
   bool set_speed(Scalar fraction) noexcept {
     if (!(fraction > Scalar(0) && fraction <= Scalar(1))) return false;
