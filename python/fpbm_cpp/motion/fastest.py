@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .._core import advice, failed, message
+from .._core import failed, message
 from .._core import fastest as fastest_motion
 from ..arms import Arm
 from ..bounds import Bound, bounds_of
@@ -25,10 +25,11 @@ from .run import Run
 from .run_data import Paths
 from .simulation import make_run, require_motion, task_and_paths
 
-INTERVALS = 600  # The tip is within 1e-9 m of most paths.
-MOST_INTERVALS = 9600
+# Intervals of the joint path. With 600, the tip is within 1e-9 m of most paths.
+INTERVALS = [600, 1200, 2400, 4800, 9600]
+REMEDY = "Keep the path inside the workspace and away from singular postures, or choose another q0, scheme or weights."
 ON_BOUND = 0.99  # Ratio to a bound above which a joint counts as on the bound.
-ON_PATH = 1e-7  # With a larger distance from the path [m, rad], the number of intervals is doubled.
+ON_PATH = 1e-7  # With a larger distance from the path [m, rad], there are more intervals.
 
 
 def fastest(
@@ -85,25 +86,22 @@ def fastest(
         "bounds": bounds_of(bounds),
         "stack": stack,
     }
-    intervals = INTERVALS
-    while True:
-        most = inf if tip_speed is None else tip_speed, inf if tip_acceleration is None else tip_acceleration
+    tip = inf if tip_speed is None else tip_speed, inf if tip_acceleration is None else tip_acceleration
+    for intervals in INTERVALS:
         outcome = fastest_motion(
-            arm, followed, scheme, q0, dt, intervals, kind, options["limits"], *most, options["bounds"], tasks
+            arm, followed, scheme, q0, dt, intervals, kind, options["limits"], *tip, options["bounds"], tasks
         )
         code, fraction, _, arrays = outcome
-        if failed(code):
-            where = np.array2string(arrays["q"], precision=4, separator=", ")
-            raise wrong(
-                "path",
-                path,
-                f": can be followed to the fraction {fraction:.3f} only, q = {where}: {message(code)}. {advice(code)}",
-            )
+        if failed(code):  # Maybe the steps are too long.
+            continue
         run = make_run(outcome, q0, arm, path, scheme, name, options, fastest)
-        if np.abs(run.error).max() < ON_PATH or intervals >= MOST_INTERVALS:
-            ratios = run.bound_ratios()
-            return replace(run, saturated=np.max(list(ratios.values()), axis=0) > ON_BOUND)
-        intervals *= 2
+        if np.abs(run.error).max() < ON_PATH:
+            break
+    if failed(code):
+        where = np.array2string(arrays["q"], precision=4, separator=", ")
+        problem = f": can be followed to the fraction {fraction:.3f} only, q = {where}: {message(code)}. {REMEDY}"
+        raise wrong("path", path, problem)
+    return replace(run, saturated=np.max(list(run.bound_ratios().values()), axis=0) > ON_BOUND)
 
 
 def _smooth_all(path: Paths) -> Paths:

@@ -70,10 +70,11 @@ template <int N, typename Path, typename Kept>
 [[nodiscard]] FastestClock fastest_clock(const Spline<N>& joints, const Path& path, const JointLimits<N>& limits,
                                          Kept& bounds, const FastestOptions& options) {
   using Space = typename Path::Space;
-  constexpr double kRest = 1e-9;  // [m/s, m/s²], relative to paths of about 1 m and 1 s.
-  for (const double end : {0.0, path.duration()}) {
+  constexpr double kRest = 1e-9;  // [m, rad], for the round-off errors of splines.
+  const double duration = path.duration();
+  for (const double end : {0.0, duration}) {
     const Reference<Space> at = path.sample(end);
-    if (!(at.xd.norm() < kRest && at.xdd.norm() < kRest)) {
+    if (!(duration * (at.xd.norm() + duration * at.xdd.norm()) < kRest)) {
       validation::reject("path", ": must begin and end at rest with zero acceleration: use the time law Quintic");
     }
   }
