@@ -50,7 +50,7 @@ class FastestClock {
     for (auto& interval : bounds) {
       for (ClockBounds& each : interval) each.scale(unit);
     }
-    // Between the places of the solver, a clock may exceed bounds, where x changes much within an interval. Then the
+    // Between the places of the solver, a clock may exceed bounds, where y changes much within an interval. Then the
     // bounds of this interval are tightened. Rounds after the second gain less than 1e-4 of the duration.
     constexpr int kRounds = 2;
     constexpr double kExcess = 1e-4;
@@ -95,12 +95,12 @@ class FastestClock {
     // Newton's method for the fraction of the interval at which the time is `own`.
     double f = (own - times_[i]) / (times_[i + 1] - times_[i]);
     for (int k = 0; k < kNewtonSteps; ++k) {
-      f += (own - times_[i] - time_in(i, f)) * std::sqrt(clock_.at(i, f).x) / clock_.width();
+      f += (own - times_[i] - time_in(i, f)) * std::sqrt(clock_.at(i, f).y) / clock_.width();
       f = std::clamp(f, 0.0, 1.0);
     }
     const ClockState state = clock_.at(i, f);
-    return {start_ + (static_cast<double>(i) + f) * clock_.width(), rate_ * std::sqrt(state.x),
-            rate_ * rate_ * state.x1 / 2.0};
+    return {start_ + (static_cast<double>(i) + f) * clock_.width(), rate_ * std::sqrt(state.y),
+            rate_ * rate_ * state.y1 / 2.0};
   }
 
  private:
@@ -156,7 +156,7 @@ class FastestClock {
     constexpr std::array<double, 5> kWeights{0.2844444444444444, 0.2393143352496832, 0.2393143352496832,
                                              0.1184634425280945, 0.1184634425280945};
     double sum = 0.0;
-    for (std::size_t k = 0; k < 5; ++k) sum += kWeights[k] / std::sqrt(clock_.at(i, f * kPoints[k]).x);
+    for (std::size_t k = 0; k < 5; ++k) sum += kWeights[k] / std::sqrt(clock_.at(i, f * kPoints[k]).y);
     return sum * f * clock_.width();
   }
 

@@ -11,18 +11,17 @@
 
 namespace fpbm {
 
-/// State of a clock p(t) at one place p of a path: x = ṗ², and the derivatives of x with respect to p. The rates of the
-/// clock are p̈ = x′/2 and p⃛ = √x x″/2.
+/// State of a clock p(t) at one place p of a path: y = ṗ², and the derivatives of y with respect to p. The rates of the
+/// clock are p̈ = y′/2 and p⃛ = √y y″/2.
 struct ClockState {
-  double x;
-  double x1;
-  double x2;
+  double y;
+  double y1;
+  double y2;
 };
 
 /// The bounds on a motion along a joint path q(p) at one place of the path, as bounds on the clock:
-///   q̇ = q′√x,  q̈ = q″x + q′x′/2,  q⃛ = √x (q‴x + 3q″x′/2 + q′x″/2),
-/// each divided by its bound. Bounds on the tip, ẋ = x′√x and ẍ = x″x + x′x′/2 (x′: derivatives of the position of the
-/// tip), are bounds on norms.
+///   q̇ = q′√y,  q̈ = q″y + q′y′/2,  q⃛ = √y (q‴y + 3q″y′/2 + q′y″/2),
+/// each divided by its bound. Bounds on the tip, ẋ = x′√y and ẍ = x″y + x′y′/2, are bounds on norms.
 class ClockBounds {
  public:
   /// d: q′, q″, q‴. v, a, j: bounds on velocities, accelerations and jerks; j may be infinite.
@@ -48,7 +47,7 @@ class ClockBounds {
     tip_ = {d2.squaredNorm() / square, d2.dot(d1) / (2.0 * square), d1.squaredNorm() / (4.0 * square)};
   }
 
-  /// The largest x of a clock with constant rate.
+  /// The largest y of a clock with constant rate.
   [[nodiscard]] double largest() const noexcept {
     double inverse = std::max(speed_, std::sqrt(tip_[0]));
     for (const Joint& joint : joints_) {
@@ -57,10 +56,10 @@ class ClockBounds {
     return 1.0 / inverse;
   }
 
-  /// Changes the unit of x: the new x is x divided by `unit`. At places where the path stands, x is at most kMostX.
+  /// Changes the unit of y: the new y is y divided by `unit`. At places where the path stands, y is at most kMostY.
   void scale(double unit) noexcept {
-    constexpr double kMostX = 1e8;
-    speed_ = std::max(speed_ * unit, 1.0 / kMostX);
+    constexpr double kMostY = 1e8;
+    speed_ = std::max(speed_ * unit, 1.0 / kMostY);
     for (double& entry : tip_) entry *= unit * unit;
     const double cubic = unit * std::sqrt(unit);
     for (Joint& joint : joints_) {
@@ -70,17 +69,17 @@ class ClockBounds {
 
   /// Sum of −log(1 − r²) over the ratios r of all bounded quantities to their bounds; infinite if a bound is exceeded.
   [[nodiscard]] double barrier(const ClockState& at) const noexcept {
-    if (!(at.x > 0.0)) return std::numeric_limits<double>::infinity();
-    double product = slack(speed_ * at.x) * slack(tip_square(at));
+    if (!(at.y > 0.0)) return std::numeric_limits<double>::infinity();
+    double product = slack(speed_ * at.y) * slack(tip_square(at));
     for (const Joint& joint : joints_) {
       const double a = joint.acceleration(at);
       const double j = joint.jerk(at);
-      product *= slack(a * a) * slack(at.x * j * j);
+      product *= slack(a * a) * slack(at.y * j * j);
     }
     return product > 0.0 ? -std::log(product) : std::numeric_limits<double>::infinity();
   }
 
-  /// Adds the gradient of barrier() with respect to (x, x′, x″), and its Hessian (upper triangle, by rows), without the
+  /// Adds the gradient of barrier() with respect to (y, y′, y″), and its Hessian (upper triangle, by rows), without the
   /// second derivatives of the jerks, so that the Hessian is positive semidefinite.
   void add_derivatives(const ClockState& at, std::array<double, 3>& gradient,
                        std::array<double, 6>& hessian) const noexcept {
@@ -95,10 +94,10 @@ class ClockBounds {
       hessian[4] += c2 * u1 * u2;
       hessian[5] += c2 * u2 * u2;
     };
-    const double speed = 1.0 / (1.0 - speed_ * at.x);
+    const double speed = 1.0 / (1.0 - speed_ * at.y);
     add(speed, speed * speed, speed_, 0.0, 0.0);
     const double tip = 1.0 / (1.0 - tip_square(at));
-    add(tip, tip * tip, 2.0 * (tip_[0] * at.x + tip_[1] * at.x1), 2.0 * (tip_[1] * at.x + tip_[2] * at.x1), 0.0);
+    add(tip, tip * tip, 2.0 * (tip_[0] * at.y + tip_[1] * at.y1), 2.0 * (tip_[1] * at.y + tip_[2] * at.y1), 0.0);
     hessian[0] += 2.0 * tip * tip_[0];
     hessian[1] += 2.0 * tip * tip_[1];
     hessian[3] += 2.0 * tip * tip_[2];
@@ -106,7 +105,7 @@ class ClockBounds {
       const double inverse = 1.0 / (1.0 - ratio * ratio);
       add(2.0 * ratio * inverse, 2.0 * (1.0 + ratio * ratio) * inverse * inverse, u0, u1, u2);
     };
-    const double root = std::sqrt(at.x);
+    const double root = std::sqrt(at.y);
     for (const Joint& joint : joints_) {
       add_ratio(joint.acceleration(at), joint.a0, joint.a1, 0.0);
       const double j = joint.jerk(at);
@@ -116,7 +115,7 @@ class ClockBounds {
 
   /// The factor by which a clock must be slower everywhere, so that no bound is exceeded here.
   [[nodiscard]] double slower(const ClockState& at) const noexcept {
-    const double root = std::sqrt(std::max(at.x, 0.0));
+    const double root = std::sqrt(std::max(at.y, 0.0));
     double a = std::sqrt(std::max(tip_square(at), 0.0));
     double j = 0.0;
     for (const Joint& joint : joints_) {
@@ -131,19 +130,19 @@ class ClockBounds {
   struct Joint {
     double a0, a1, j0, j1, j2;
 
-    [[nodiscard]] double acceleration(const ClockState& at) const noexcept { return a0 * at.x + a1 * at.x1; }
-    /// Divided by √x.
-    [[nodiscard]] double jerk(const ClockState& at) const noexcept { return j0 * at.x + j1 * at.x1 + j2 * at.x2; }
+    [[nodiscard]] double acceleration(const ClockState& at) const noexcept { return a0 * at.y + a1 * at.y1; }
+    /// Divided by √y.
+    [[nodiscard]] double jerk(const ClockState& at) const noexcept { return j0 * at.y + j1 * at.y1 + j2 * at.y2; }
   };
 
   static double slack(double square) noexcept { return std::max(1.0 - square, 0.0); }
   [[nodiscard]] double tip_square(const ClockState& at) const noexcept {
-    return tip_[0] * at.x * at.x + 2.0 * tip_[1] * at.x * at.x1 + tip_[2] * at.x1 * at.x1;
+    return tip_[0] * at.y * at.y + 2.0 * tip_[1] * at.y * at.y1 + tip_[2] * at.y1 * at.y1;
   }
 
   std::vector<Joint> joints_;
-  std::array<double, 3> tip_{};  ///< Quadratic form of the acceleration of the tip in x and x′.
-  double speed_ = 0.0;           ///< Largest square of a velocity divided by its bound, at x = 1.
+  std::array<double, 3> tip_{};  ///< Quadratic form of the acceleration of the tip in y and y′.
+  double speed_ = 0.0;           ///< Largest square of a velocity divided by its bound, at y = 1.
 };
 
 }  // namespace fpbm

@@ -11,7 +11,7 @@
 
 namespace fpbm {
 
-/// The squared rate x(p) of a clock, as a quadratic B-spline with equal intervals of p: x′ is continuous, and x″ is
+/// The squared rate y(p) of a clock, as a quadratic B-spline with equal intervals of p: y′ is continuous, and y″ is
 /// constant in each interval. Therefore, the accelerations of a motion are continuous.
 class ClockSpline {
  public:
@@ -21,7 +21,7 @@ class ClockSpline {
   [[nodiscard]] double width() const noexcept { return width_; }
   [[nodiscard]] std::vector<double>& coefficients() noexcept { return coefficients_; }
 
-  /// Weights of the three coefficients of an interval in x, x′ and x″, at the fraction f of the interval.
+  /// Weights of the three coefficients of an interval in y, y′ and y″, at the fraction f of the interval.
   [[nodiscard]] std::array<std::array<double, 3>, 3> weights(double f) const noexcept {
     const double rest = 1.0 - f;
     const double square = width_ * width_;
@@ -41,8 +41,8 @@ class ClockSpline {
   std::vector<double> coefficients_;
 };
 
-/// Clock with the least duration ∫ dp/√x within its bounds, by an interior-point method: Newton's method minimises
-/// τ ∫ dp/√x + Σ barrier(), for increasing τ. Every iterate keeps all bounds. The matrix of a step has two bands beside
+/// Clock with the least duration ∫ dp/√y within its bounds, by an interior-point method: Newton's method minimises
+/// τ ∫ dp/√y + Σ barrier(), for increasing τ. Every iterate keeps all bounds. The matrix of a step has two bands beside
 /// its diagonal. The bounds on jerk are not convex: the result is a local minimum.
 class ClockSolver {
  public:
@@ -51,7 +51,7 @@ class ClockSolver {
   static constexpr std::array<double, 3> kFractions{0.0, 0.5, 1.0};
   static constexpr std::array<double, 3> kSimpson{1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0};
 
-  /// bounds: for each interval, the bounds at kFractions, in a unit of x near the largest constant x.
+  /// bounds: for each interval, the bounds at kFractions, in a unit of y near the largest constant y.
   ClockSolver(const std::vector<std::array<ClockBounds, 3>>& bounds, Eigen::Index dof, double width)
       : bounds_(bounds), spline_(bounds.size(), width) {
     for (std::size_t k = 0; k < 3; ++k) weights_[k] = spline_.weights(kFractions[k]);
@@ -61,7 +61,7 @@ class ClockSolver {
   /// The clock. The duration exceeds the duration at the minimum by at most the factor kGap, for convex bounds.
   [[nodiscard]] ClockSpline solve() {
     constexpr double kGap = 5e-4;
-    constexpr double kStart = 0.5;   // Fraction of the largest constant x.
+    constexpr double kStart = 0.5;   // Fraction of the largest constant y.
     constexpr double kGrowth = 6.0;  // Factor of τ. 4 to 10 need 25 to 35 steps.
     constexpr int kMostSteps = 200;  // Random paths need at most 60.
     std::vector<double>& c = spline_.coefficients();
@@ -84,7 +84,7 @@ class ClockSolver {
   [[nodiscard]] double duration(const ClockSpline& spline) const noexcept {
     double sum = 0.0;
     for (std::size_t i = 0; i < bounds_.size(); ++i) {
-      for (std::size_t k = 0; k < 3; ++k) sum += kSimpson[k] / std::sqrt(spline.at(i, weights_[k]).x);
+      for (std::size_t k = 0; k < 3; ++k) sum += kSimpson[k] / std::sqrt(spline.at(i, weights_[k]).y);
     }
     return sum * spline.width();
   }
@@ -96,7 +96,7 @@ class ClockSolver {
         const ClockState at = spline.at(i, weights_[k]);
         const double barrier = bounds_[i][k].barrier(at);
         if (!(barrier < std::numeric_limits<double>::infinity())) return barrier;
-        sum += barrier + emphasis * spline.width() * kSimpson[k] / std::sqrt(at.x);
+        sum += barrier + emphasis * spline.width() * kSimpson[k] / std::sqrt(at.y);
       }
     }
     return sum;
@@ -131,9 +131,9 @@ class ClockSolver {
       for (std::size_t k = 0; k < 3; ++k) {
         const auto& w = weights_[k];
         const ClockState at = spline_.at(i, w);
-        const double rate = emphasis * spline_.width() * kSimpson[k] / (at.x * std::sqrt(at.x));
+        const double rate = emphasis * spline_.width() * kSimpson[k] / (at.y * std::sqrt(at.y));
         std::array<double, 3> g{-rate / 2.0, 0.0, 0.0};
-        std::array<double, 6> h{0.75 * rate / at.x, 0.0, 0.0, 0.0, 0.0, 0.0};
+        std::array<double, 6> h{0.75 * rate / at.y, 0.0, 0.0, 0.0, 0.0, 0.0};
         bounds_[i][k].add_derivatives(at, g, h);
         for (std::size_t r = 0; r < 3; ++r) {
           step_[i + r] -= g[0] * w[0][r] + g[1] * w[1][r] + g[2] * w[2][r];
