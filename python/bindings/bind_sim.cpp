@@ -2,12 +2,17 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <utility>
+#include <variant>
 #include <vector>
 
+#include "fpbm/path/detail/timed_path.hpp"
 #include "motion.hpp"
 #include "read.hpp"
 #include "sources.hpp"
@@ -43,6 +48,8 @@ std::optional<LimitOptions> limit_options_of(const py::object& given, const Mode
     limit_options.keeps_clear = limit_options.keeps_clear || is_class(each, "clearance", "Clearance");
   }
   limit_options.options.recover_start = py::cast<bool>(given.attr("recover_start"));
+  limit_options.keeps_path = py::cast<bool>(given.attr("keep_path"));
+  limit_options.reserve = number("reserve");
   return limit_options;
 }
 
@@ -75,10 +82,14 @@ class MotionOptions {
                 const py::object& stack_tasks)
       : limits_(limit_options_of(limit_options, model)),
         stack_(stack_options_of(stack_tasks, model, path)),
-        grid_(stack_ ? stack_->duration : path.duration(), dt, hold) {}
+        duration_(stack_ ? stack_->duration : path.duration()),
+        grid_(keeps_path() ? std::ceil(duration_ / dt) * dt : duration_, dt, hold) {}
 
   /// Null without limits.
   [[nodiscard]] const LimitOptions* limits() const noexcept { return limits_ ? &*limits_ : nullptr; }
+  [[nodiscard]] bool keeps_path() const noexcept { return limits_ && limits_->keeps_path; }
+  /// Duration of the path, or of the longest path of a stack [s].
+  [[nodiscard]] double duration() const noexcept { return duration_; }
   /// Null without a stack.
   [[nodiscard]] const StackOptions* stack() const noexcept { return stack_ ? &*stack_ : nullptr; }
   [[nodiscard]] const TimeGrid<double>& grid() const noexcept { return grid_; }
@@ -86,6 +97,7 @@ class MotionOptions {
  private:
   std::optional<LimitOptions> limits_;
   std::optional<StackOptions> stack_;
+  double duration_;
   TimeGrid<double> grid_;
 };
 
@@ -121,6 +133,40 @@ struct MotionArrays {
   Output<Space> output;  ///< Pointers to the numbers of the arrays.
 };
 
+/// The joint positions of a motion without limits along a path of a duration [s].
+template <typename Space>
+JointPath<kDynamic> joint_path_of(Motion<Space> motion, double duration) {
+  return joint_path<kDynamic>(duration, [&](int intervals, std::vector<JointVector>& rows) {
+    motion.grid = TimeGrid<double>(duration, duration / intervals);
+    RowMajor q(motion.grid.samples(), motion.start.q.size());
+    Output<Space> output;
+    output.buffers.q = q.data();
+    const auto result = motion.simulate(output);
+    for (Eigen::Index i = 0; i < result.samples; ++i) rows.emplace_back(q.row(i).transpose());
+    return result;
+  });
+}
+
+/// The clock of a path that the motion keeps within its limits: at least as long as the path, with the reserve.
+template <typename Space>
+std::shared_ptr<const FastestClock> kept_clock(const Motion<Space>& motion, double duration,
+                                               const LimitOptions& limit_options) {
+  if (motion.scheme.level != Level::kVelocity) {
+    validation::reject("keep_path", " needs a scheme at velocity level, for example MVN() or WMVN(weights)");
+  }
+  const JointPath<kDynamic> along = joint_path_of(motion, duration);
+  if (!along.joints) {
+    validation::reject("path", ": can be followed to the fraction ", along.result.time / duration,
+                       " only: ", message(along.result.status), ". ", advice(along.result.status));
+  }
+  AnyBounds bounds = limit_options.bounds;
+  const double dt = motion.grid.dt();
+  auto clock = motion.clock(*along.joints, limit_options.limits, bounds, {dt, {}});
+  const double least = std::max(duration, (1.0 + limit_options.reserve) * clock.duration());
+  clock.stretch(std::max(clock.duration(), std::ceil(least / dt - 1e-9) * dt));
+  return std::make_shared<const FastestClock>(clock);
+}
+
 /// A whole motion, run without the interpreter's lock. With limit options, the motion keeps the limits. With stack
 /// tasks, the motion has several tasks.
 Outcomes rollout(const Model& arm, const Path& path, const Scheme& scheme, const ArrayLike& q0, const ArrayLike& qd0,
@@ -130,9 +176,22 @@ Outcomes rollout(const Model& arm, const Path& path, const Scheme& scheme, const
   const MotionOptions options(arm, path, dt, hold, limit_options, stack_tasks);
   return visit_space(arm, task, options.stack() != nullptr, [&](const auto* any, auto space) -> Outcomes {
     using Space = decltype(space);
-    const AnyPath<Space> same = path.as<Space>();
-    const MotionArrays<Space> arrays(options.grid().samples(), arm.dof(), options.limits(), options.stack());
-    const Motion<Space> motion{any, same, scheme, start, options.grid(), options.stack()};
+    AnyPath<Space> same = path.as<Space>();
+    std::optional<StackOptions> stack;
+    if (options.stack() != nullptr) stack = *options.stack();
+    Motion<Space> motion{any, same, scheme, start, options.grid(), stack ? &*stack : nullptr};
+    if (options.keeps_path()) {
+      const auto clock = kept_clock(motion, options.duration(), *options.limits());
+      same = AnyPath<Space>(TimedPath(same, clock));
+      motion.grid = TimeGrid<double>(clock->duration(), motion.grid.dt(), hold);
+      if (stack) {
+        stack->duration = clock->duration();
+        for (TaskPath& each : stack->paths) {
+          std::visit([&](auto& own) { own = std::decay_t<decltype(own)>(TimedPath(own, clock)); }, each.path);
+        }
+      }
+    }
+    const MotionArrays<Space> arrays(motion.grid.samples(), arm.dof(), options.limits(), motion.stack);
     RolloutResult<kDynamic> result;
     {
       const py::gil_scoped_release others_may_run;
@@ -143,11 +202,11 @@ Outcomes rollout(const Model& arm, const Path& path, const Scheme& scheme, const
   });
 }
 
-/// A motion along a path in the least time. If the arm cannot follow the path, the time is the time of the path that
-/// can be followed, and there are no samples; q is the last posture.
+/// A motion along a path in the least time. If the arm cannot follow the path, the time is the fraction of the path
+/// that can be followed, and there are no samples; q is the last posture.
 Outcomes fastest(const Model& arm, const Path& path, const Scheme& scheme, const ArrayLike& q0, double dt,
-                 int intervals, const std::string& task, const py::object& limits, double tip_speed,
-                 double tip_acceleration, const py::object& bounds, const py::object& stack_tasks) {
+                 const std::string& task, const py::object& limits, double tip_speed, double tip_acceleration,
+                 const py::object& bounds, const py::object& stack_tasks) {
   validation::require_positive("dt", dt);
   if (!(tip_speed > 0.0)) validation::fail("tip_speed", tip_speed, "positive");
   if (!(tip_acceleration > 0.0)) validation::fail("tip_acceleration", tip_acceleration, "positive");
@@ -155,36 +214,28 @@ Outcomes fastest(const Model& arm, const Path& path, const Scheme& scheme, const
   const State<kDynamic> start{joint_vector(q0, "q0", arm.dof()), JointVector::Zero(arm.dof())};
   const std::optional<StackOptions> stack = stack_options_of(stack_tasks, arm, path);
   const double duration = stack ? stack->duration : path.duration();
-  const TimeGrid<double> nodes(duration, duration / intervals);
   return visit_space(arm, task, stack.has_value(), [&](const auto* any, auto space) -> Outcomes {
     using Space = decltype(space);
     const AnyPath<Space> same = path.as<Space>();
-    RowMajor q(nodes.samples(), arm.dof());
-    Output<Space> output;
-    output.buffers.q = q.data();
-    Motion<Space> motion{any, same, scheme, start, nodes, stack ? &*stack : nullptr};
-    const auto along = motion.simulate(output);
-    if (failed(along.status)) {
+    Motion<Space> motion{any, same, scheme, start, TimeGrid<double>(duration, duration), stack ? &*stack : nullptr};
+    const JointPath<kDynamic> along = joint_path_of(motion, duration);
+    if (!along.joints) {
       Arrays last;
-      last["q"] = array_of(along.last.q);
-      return py::make_tuple(along.status, along.time / duration, 0, last);
+      last["q"] = array_of(along.result.last.q);
+      return py::make_tuple(along.result.status, along.result.time / duration, 0, last);
     }
-    std::vector<JointVector> rows;
-    for (Eigen::Index i = 0; i < q.rows(); ++i) {
-      rows.emplace_back(q.row(i).transpose());
+    for (const double p : along.joints->times()) {
       try {
-        kept.require(rows.back());
+        kept.require(along.joints->at(p).x);
       } catch (const std::invalid_argument& error) {
-        validation::reject("path", " at the fraction ", static_cast<double>(i) / intervals, ": ", error.what());
+        validation::reject("path", " at the fraction ", p / duration, ": ", error.what());
       }
     }
-    const auto joints = joint_spline<kDynamic>(rows, duration);
-    const auto clock =
-        motion.clock(joints, limits_of(arm, limits), kept, {dt, intervals, {tip_speed, tip_acceleration}});
+    const auto clock = motion.clock(*along.joints, limits_of(arm, limits), kept, {dt, {tip_speed, tip_acceleration}});
     motion.grid = TimeGrid<double>(clock.duration(), dt);
     const MotionArrays<Space> arrays(motion.grid.samples(), arm.dof(), nullptr, motion.stack);
-    motion.play(joints, clock, arrays.output);
-    return py::make_tuple(along.status, motion.grid.duration(), motion.grid.samples(), arrays.all);
+    motion.play(*along.joints, clock, arrays.output);
+    return py::make_tuple(along.result.status, motion.grid.duration(), motion.grid.samples(), arrays.all);
   });
 }
 
@@ -306,8 +357,8 @@ void bind_sim(py::module_& m) {
         py::arg("dt"), py::arg("hold"), py::arg("task"), py::arg("limit_options") = none,
         py::arg("stack_tasks") = none);
   m.def("fastest", &fastest, py::arg("arm"), py::arg("path"), py::arg("scheme"), py::arg("q0"), py::arg("dt"),
-        py::arg("intervals"), py::arg("task"), py::arg("limits"), py::arg("tip_speed"), py::arg("tip_acceleration"),
-        py::arg("bounds"), py::arg("stack_tasks") = none);
+        py::arg("task"), py::arg("limits"), py::arg("tip_speed"), py::arg("tip_acceleration"), py::arg("bounds"),
+        py::arg("stack_tasks") = none);
   m.def("processor_kinds", &processor_kinds);
   m.def("use_lanes", &use_lanes, py::arg("code"));
   m.def("check_sweep", &check_sweep, py::arg("arm"), py::arg("path"), py::arg("schemes"), py::arg("q0s"), py::arg("dt"),

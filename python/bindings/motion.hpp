@@ -66,6 +66,8 @@ struct LimitOptions {
   TrackerOptions<> options;
   AnyBounds bounds;
   bool keeps_clear = false;  ///< Whether a clearance was given.
+  bool keeps_path = false;   ///< Whether the clock of the path slows down, so that the tip stays on the path.
+  double reserve = 0.0;      ///< Of the duration to the least duration, with keeps_path.
 };
 
 /// One motion along a path.

@@ -1046,7 +1046,6 @@ def fastest(
     scheme: Scheme,
     q0: numpy.typing.ArrayLike,
     dt: typing.SupportsFloat | typing.SupportsIndex,
-    intervals: typing.SupportsInt | typing.SupportsIndex,
     task: str,
     limits: typing.Any,
     tip_speed: typing.SupportsFloat | typing.SupportsIndex,

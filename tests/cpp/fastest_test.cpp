@@ -141,20 +141,28 @@ double least_duration(double distance, double v, double a, double j) {
   return 4.0 * ramp + 2.0 * plateau + (distance - v * (2.0 * ramp + plateau)) / v;
 }
 
+/// One joint over a distance, from rest to rest.
+Spline<1> quintic_spline(double distance, double duration) {
+  constexpr int kIntervals = 600;
+  std::vector<Vector<1>> q;
+  std::vector<double> p;
+  for (int i = 0; i <= kIntervals; ++i) {
+    p.push_back(i * duration / kIntervals);
+    q.emplace_back(distance * Quintic::at(static_cast<double>(i) / kIntervals).s);
+  }
+  return {q, p};
+}
+
 TEST(Fastest, takes_the_least_time_of_one_joint) {
   Random random(7);
-  constexpr int kIntervals = 600;
   for (int trial = 0; trial < 40; ++trial) {
     const double distance = random.uniform(0.1, 3.0);
     JointLimits<1> limits = JointLimits<1>::none(1);
     limits.velocity(0) = random.uniform(0.3, 3.0);
     limits.acceleration(0) = random.uniform(1.0, 20.0);
     limits.jerk(0) = std::pow(10.0, random.uniform(1.0, 4.0));
-    std::vector<Vector<1>> q;
-    for (int i = 0; i <= kIntervals; ++i) {
-      q.emplace_back(distance * Quintic::at(static_cast<double>(i) / kIntervals).s);
-    }
-    const FastestClock clock(joint_spline(q, 1.0), limits, [](double, const auto&, const auto&, ClockBounds&) {});
+    const FastestClock clock(quintic_spline(distance, 1.0), limits,
+                             [](double, const auto&, const auto&, ClockBounds&) {});
     const double least = least_duration(distance, limits.velocity(0), limits.acceleration(0), limits.jerk(0));
     EXPECT_GE(clock.duration(), least * (1.0 - 1e-6));
     EXPECT_LE(clock.duration(), least * 1.01)
@@ -163,12 +171,10 @@ TEST(Fastest, takes_the_least_time_of_one_joint) {
 }
 
 TEST(Fastest, clock_is_the_integral_of_its_rate) {
-  std::vector<Vector<1>> q;
-  for (int i = 0; i <= 200; ++i) q.emplace_back(Quintic::at(i / 200.0).s);
   JointLimits<1> limits = JointLimits<1>::none(1);
   limits.velocity(0) = limits.acceleration(0) = 1.0;
   limits.jerk(0) = 10.0;
-  FastestClock clock(joint_spline(q, 2.0), limits, [](double, const auto&, const auto&, ClockBounds&) {});
+  FastestClock clock(quintic_spline(1.0, 2.0), limits, [](double, const auto&, const auto&, ClockBounds&) {});
   clock.stretch(1.5 * clock.duration());
   const double T = clock.duration();
   EXPECT_EQ(clock.at(0.0).s, 0.0);

@@ -16,20 +16,16 @@ from ..arms import Arm
 from ..bounds import Bound, bounds_of
 from ..errors import wrong
 from ..joints import JointLimits, limits_of
-from ..paths import Circle, InPlane, Line, Lissajous, Path, Tricuspid, WithRotation
-from ..paths import Sequence as PathSequence
 from ..robots import Robot
 from ..schemes import Scheme
 from ..tasks import Stack
 from .run import Run
 from .run_data import Paths
 from .simulation import make_run, require_motion, task_and_paths
+from .smooth import smooth_all
 
-# Intervals of the joint path. With 600, the tip is within 1e-9 m of most paths.
-INTERVALS = [600, 1200, 2400, 4800, 9600]
 REMEDY = "Keep the path inside the workspace and away from singular postures, or choose another q0, scheme or weights."
 ON_BOUND = 0.99  # Ratio to a bound above which a joint counts as on the bound.
-ON_PATH = 1e-7  # With a larger distance from the path [m, rad], there are more intervals.
 
 
 def fastest(
@@ -77,7 +73,7 @@ def fastest(
         raise wrong(
             "scheme", scheme, f" = {scheme!r:.80}: must be at velocity level, for example MVN() or WMVN(weights)"
         )
-    name, kind, followed, tasks = task_and_paths(_smooth_all(path), task, stack)
+    name, kind, followed, tasks = task_and_paths(smooth_all(path), task, stack)
     options: dict[str, Any] = {
         "dt": float(dt),
         "limits": limits_of(arm, limits),
@@ -87,35 +83,11 @@ def fastest(
         "stack": stack,
     }
     tip = inf if tip_speed is None else tip_speed, inf if tip_acceleration is None else tip_acceleration
-    for intervals in INTERVALS:
-        outcome = fastest_motion(
-            arm, followed, scheme, q0, dt, intervals, kind, options["limits"], *tip, options["bounds"], tasks
-        )
-        code, fraction, _, arrays = outcome
-        if failed(code):  # Maybe the steps are too long.
-            continue
-        run = make_run(outcome, q0, arm, path, scheme, name, options, fastest)
-        if np.abs(run.error).max() < ON_PATH:
-            break
+    outcome = fastest_motion(arm, followed, scheme, q0, dt, kind, options["limits"], *tip, options["bounds"], tasks)
+    code, fraction, _, arrays = outcome
     if failed(code):
         where = np.array2string(arrays["q"], precision=4, separator=", ")
         problem = f": can be followed to the fraction {fraction:.3f} only, q = {where}: {message(code)}. {REMEDY}"
         raise wrong("path", path, problem)
+    run = make_run(outcome, q0, arm, path, scheme, name, options, fastest)
     return replace(run, saturated=np.max(list(run.bound_ratios().values()), axis=0) > ON_BOUND)
-
-
-def _smooth_all(path: Paths) -> Paths:
-    return smooth(path) if isinstance(path, Path) else {name: smooth(each) for name, each in path.items()}
-
-
-def smooth(path: Path) -> Path:
-    """The path with time laws that begin and end with zero velocity and acceleration; the geometry is equal."""
-    if isinstance(path, PathSequence):
-        return replace(path, paths=tuple(smooth(each) for each in path.paths))
-    if isinstance(path, InPlane):
-        return replace(path, path=smooth(path.path))
-    if isinstance(path, WithRotation):
-        return replace(path, path=smooth(path.path), time_law="quintic")
-    if isinstance(path, (Circle, Lissajous, Tricuspid, Line)):
-        return replace(path, time_law="quintic")
-    return path

@@ -17,6 +17,7 @@ from ..schemes import Scheme
 from ..tasks import PoseTask, Stack
 from .run import Run
 from .run_data import Paths, RunStatus
+from .smooth import smooth_all
 
 
 class LimitOptions(NamedTuple):
@@ -32,6 +33,8 @@ class LimitOptions(NamedTuple):
     null_damping: float = 2.0
     bounds: Sequence[Bound] = ()
     recover_start: bool = False
+    keep_path: bool = False
+    reserve: float = 0.05
 
 
 class StackTasks(NamedTuple):
@@ -120,6 +123,8 @@ def track(
     null_damping: float = 2.0,
     bounds: Sequence[Bound] = (),
     recover_start: bool = False,
+    keep_path: bool = False,
+    reserve: float = 0.05,
 ) -> Run:
     """Move an arm along a path under a scheme, within its joints' limits and through singular postures.
 
@@ -139,21 +144,28 @@ def track(
         As for Tracker.
     singular_radius, singular_brake, null_damping, bounds, recover_start
         As for Tracker.
+    keep_path, reserve
+        Whether the tip stays on the path if the path is faster than the limits allow: the path then lasts (1 + reserve)
+        times the duration of fastest(). Needs a scheme at velocity level, and a start at rest. The durations and time
+        laws of shapes have no effect, except that the motion is not shorter than the path. Nearly singular postures are
+        not damped: the bounds on the joints limit the motion there.
     """
     require_motion(arm, path, scheme)
     options = motion_options(arm, dt, hold, qd0)
-    name, kind, followed, tasks = task_and_paths(path, task, stack)
+    name, kind, followed, tasks = task_and_paths(smooth_all(path) if keep_path else path, task, stack)
     limited = LimitOptions(
         limits_of(arm, limits),
         error_bound,
         integral_gain,
         integral_bound,
         stall_time,
-        singular_radius,
+        0.0 if keep_path else singular_radius,  # Damping would move the arm away from its joint path.
         singular_brake,
         null_damping,
         bounds_of(bounds),
         bool(recover_start),
+        bool(keep_path),
+        reserve,
     )
     outcome = rollout(arm, followed, scheme, q0, options["qd0"], dt, hold, kind, limited, tasks)
     options |= {**limited._asdict(), "stack": stack}

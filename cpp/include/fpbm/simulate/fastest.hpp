@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "fpbm/core/detail/validation.hpp"
@@ -13,6 +15,7 @@
 #include "fpbm/path/spline.hpp"
 #include "fpbm/simulate/detail/anchored_path.hpp"
 #include "fpbm/simulate/detail/motion.hpp"
+#include "fpbm/simulate/detail/motion_differences.hpp"
 #include "fpbm/simulate/rollout.hpp"
 #include "fpbm/simulate/time_grid.hpp"
 
@@ -21,46 +24,41 @@ namespace fpbm {
 /// Options of fastest().
 struct FastestOptions {
   double dt = 1e-3;      ///< Time between samples [s]; the motion lasts a multiple of dt.
-  int intervals = 600;   ///< Intervals of the joint path and of its clock.
   TipBounds<> tip = {};  ///< Bounds on velocity and acceleration of the tip; angular bounds are not read.
 };
 
-/// Joint positions q along a path of a duration [s], at equal intervals of the path's time, as a spline.
+/// A joint path, and the result of the motion along the path. If the arm cannot follow the path, the joint path is
+/// empty, and the time of the result is the time of the path that can be followed.
 template <int N>
-[[nodiscard]] Spline<N> joint_spline(const std::vector<Vector<N>>& q, double duration) {
-  std::vector<double> p(q.size());
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    p[i] = static_cast<double>(i) * duration / static_cast<double>(p.size() - 1);
-  }
-  return Spline<N>(q, p);
-}
+struct JointPath {
+  RolloutResult<N> result;
+  std::optional<Spline<N>> joints;
+};
 
-/// The factor by which a clock must be slower, so that the differences of positions at every dt [s] keep the bounds on
-/// velocity, acceleration and jerk.
-template <int N>
-[[nodiscard]] double excess_of_differences(const Spline<N>& joints, const FastestClock& clock,
-                                           const JointLimits<N>& limits, double dt) {
-  const JointLimits<N> complete = limits.complete();
-  const auto ratio = [](const Vector<N>& difference, const Vector<N>& bound) {
-    return difference.cwiseAbs().cwiseQuotient(bound).maxCoeff();
-  };
-  // Before its start and after its end, the motion is at rest.
-  Vector<N> q = joints.at(clock.at(0.0).s).x;
-  Vector<N> velocity = filled<Vector<N>>(q.size());
-  Vector<N> acceleration = velocity;
-  double excess = 0.0;
-  const auto ticks = static_cast<int>(std::lround(clock.duration() / dt));
-  for (int k = 1; k <= ticks + 2; ++k) {
-    const Vector<N> next = joints.at(clock.at(k * dt).s).x;
-    const Vector<N> v = (next - q) / dt;
-    const Vector<N> a = (v - velocity) / dt;
-    excess = std::max({excess, ratio(v, complete.velocity), std::sqrt(ratio(a, complete.acceleration)),
-                       std::cbrt(ratio((a - acceleration) / dt, complete.jerk))});
-    q = next;
-    velocity = v;
-    acceleration = a;
+/// The joint positions of a motion without limits along a path of a duration [s], as a spline.
+/// nodes(intervals, q) executes the motion with this number of equal steps, adds the positions to q, and returns the
+/// result. The number of intervals is doubled until the motion follows the path, and the positions in the middle of the
+/// intervals are within kAccuracy of the spline.
+template <int N, typename Nodes>
+[[nodiscard]] JointPath<N> joint_path(double duration, const Nodes& nodes) {
+  constexpr double kAccuracy = 1e-8;  // [rad] or [m]; the tip is then within 1e-8 m of most paths.
+  constexpr int kLeast = 600;
+  constexpr int kMost = 9600;
+  JointPath<N> path{};
+  for (int intervals = kLeast; intervals <= kMost; intervals *= 2) {
+    std::vector<Vector<N>> q;
+    path.result = nodes(intervals, q);
+    if (failed(path.result.status)) continue;  // Maybe the steps are too long.
+    std::vector<double> p(q.size());
+    for (std::size_t i = 0; i < p.size(); ++i) p[i] = static_cast<double>(i) * duration / intervals;
+    double deviation = path.joints ? 0.0 : std::numeric_limits<double>::infinity();
+    for (std::size_t i = 1; path.joints && i < p.size(); i += 2) {
+      deviation = std::max(deviation, (path.joints->at(p[i]).x - q[i]).cwiseAbs().maxCoeff());
+    }
+    if (deviation < kAccuracy) break;
+    path.joints = Spline<N>(q, p);
   }
-  return excess;
+  return path;
 }
 
 /// The clock of FastestClock for joint positions along a path, slowed so that the motion lasts a multiple of dt and
@@ -146,21 +144,18 @@ RolloutResult<Arm::kDof> fastest(const Arm& arm, const Path& path, const Scheme&
                                  Recorder&& record) {
   static_assert(Scheme::kLevel == Level::kVelocity, "fastest() needs a scheme at velocity level");
   validation::require_positive("dt", options.dt);
-  if (options.intervals < 2) validation::fail("intervals", options.intervals, "at least 2");
-  std::vector<Vector<Arm::kDof>> q;
-  const TimeGrid<double> nodes(path.duration(), path.duration() / options.intervals);
-  const auto add = [&q](const auto& sample) {
-    q.push_back(sample.q);
-    return true;
-  };
-  const auto along = rollout(arm, path, scheme, State<Arm::kDof>{q0, filled<Vector<Arm::kDof>>(q0.size())}, nodes, add);
-  if (failed(along.status)) return along;
-  if (!bounds.empty()) {
-    for (const auto& posture : q) bounds.require(posture);
-  }
-  const Spline<Arm::kDof> joints = joint_spline(q, path.duration());
-  const FastestClock clock = fastest_clock(joints, path, limits, bounds, options);
-  return play(arm, path, joints, clock, TimeGrid<double>(clock.duration(), options.dt), record);
+  const auto path_of = joint_path<Arm::kDof>(path.duration(), [&](int intervals, std::vector<Vector<Arm::kDof>>& q) {
+    const TimeGrid<double> nodes(path.duration(), path.duration() / intervals);
+    const auto add = [&](const auto& sample) {
+      if (!bounds.empty()) bounds.require(sample.q);
+      q.push_back(sample.q);
+      return true;
+    };
+    return rollout(arm, path, scheme, State<Arm::kDof>{q0, filled<Vector<Arm::kDof>>(q0.size())}, nodes, add);
+  });
+  if (!path_of.joints) return path_of.result;
+  const FastestClock clock = fastest_clock(*path_of.joints, path, limits, bounds, options);
+  return play(arm, path, *path_of.joints, clock, TimeGrid<double>(clock.duration(), options.dt), record);
 }
 
 }  // namespace fpbm

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "fpbm/path/fastest.hpp"
+#include "fpbm/path/reference.hpp"
+
+namespace fpbm {
+
+/// A path with the clock of FastestClock instead of its own time law. Copies share the clock.
+template <typename Path>
+class TimedPath {
+ public:
+  using Scalar = double;
+  using Space = typename Path::Space;
+
+  TimedPath(const Path& path, std::shared_ptr<const FastestClock> clock) : path_(path), clock_(std::move(clock)) {}
+
+  [[nodiscard]] double duration() const noexcept { return clock_->duration(); }
+
+  /// x(p), x′ṗ, x″ṗ² + x′p̈; outside of the motion, at rest at the nearest end.
+  [[nodiscard]] Reference<Space> sample(double t) const noexcept {
+    const Phase<double> clock = clock_->at(t);
+    Reference<Space> reference = path_.sample(clock.s);
+    reference.xdd = reference.xdd * (clock.sd * clock.sd) + reference.xd * clock.sdd;
+    reference.xd *= clock.sd;
+    return reference;
+  }
+
+ private:
+  Path path_;
+  std::shared_ptr<const FastestClock> clock_;
+};
+
+}  // namespace fpbm
