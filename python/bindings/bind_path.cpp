@@ -9,11 +9,9 @@
 #include "arrays.hpp"
 #include "fpbm/any/detail/any_time_law.hpp"
 #include "fpbm/any/detail/convert_path.hpp"
-#include "fpbm/path/in_plane.hpp"
 #include "fpbm/path/path.hpp"
-#include "fpbm/path/sequence.hpp"
+#include "fpbm/path/placed.hpp"
 #include "fpbm/path/waypoints.hpp"
-#include "fpbm/path/with_rotation.hpp"
 #include "path.hpp"
 
 namespace fpbm::bindings {
