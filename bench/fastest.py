@@ -51,9 +51,7 @@ def random_run(arm: fp.SerialArm, limits: fp.JointLimits, random: np.random.Gene
         path = fp.Waypoints(np.vstack([np.zeros(3), np.cumsum(steps, axis=0)]), duration=1.0)
         begin = time.process_time()
         try:
-            run = fp.fastest(
-                arm, path, fp.MVN(), q0, dt=DT, task="pose" if arm.dof > 6 else "position", limits=limits
-            )
+            run = fp.fastest(arm, path, fp.MVN(), q0, dt=DT, task="pose" if arm.dof > 6 else "position", limits=limits)
         except fp.ParameterError:
             continue
         return run, time.process_time() - begin
@@ -114,7 +112,8 @@ def main() -> int:
     for name, found in worst.items():
         v, a, j, off, ms, duration = np.array(found).T
         per = f"{np.median(ms):.0f}, {ms.max():.0f}"
-        rows.append([name, *(f"{each.max():.9f}" for each in (v, a, j)), f"{off.max():.1e}", per, f"{duration.mean():.2f}"])
+        largest = [f"{each.max():.9f}" for each in (v, a, j)]
+        rows.append([name, *largest, f"{off.max():.1e}", per, f"{duration.mean():.2f}"])
     head = ["arm", "velocity", "acceleration", "jerk", "off the path [m, rad]", "planning: median, longest [ms]"]
     print_table([*head, "mean duration [s]"], rows)
     print()

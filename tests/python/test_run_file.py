@@ -104,7 +104,7 @@ def test_motions_of_a_sweep_are_replayed(q0):
 
 
 def test_a_run_of_no_function_is_not_replayed(run):
-    with pytest.raises(ValueError, match=r"run: must be a result of simulate\(\), track\(\) or sweep\(\)"):
+    with pytest.raises(ValueError, match=r"run: must be a result of simulate\(\), track\(\), fastest\(\) or sweep\(\)"):
         replace(run, function=None).replay()
 
 

@@ -10,13 +10,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .. import _core
 from .._core import advice, failed, message
+from .._core import fastest as core_fastest
 from ..arms import Arm
 from ..bounds import Bound, bounds_of
-from ..errors import require, wrong
+from ..errors import wrong
 from ..joints import JointLimits, limits_of
-from ..paths import InPlane, Path, Sequence as PathSequence, Waypoints, WithRotation
+from ..paths import InPlane, Path, Waypoints, WithRotation
+from ..paths import Sequence as PathSequence
 from ..robots import Robot
 from ..schemes import Scheme
 from ..tasks import Stack
@@ -87,10 +88,10 @@ def fastest(
     intervals = INTERVALS
     while True:
         most = inf if tip_speed is None else tip_speed, inf if tip_acceleration is None else tip_acceleration
-        outcome = _core.fastest(
+        outcome = core_fastest(
             arm, followed, scheme, q0, dt, intervals, kind, options["limits"], *most, options["bounds"], tasks
         )
-        code, fraction, samples, arrays = outcome
+        code, fraction, _, arrays = outcome
         if failed(code):
             where = np.array2string(arrays["q"], precision=4, separator=", ")
             raise wrong(
@@ -117,4 +118,4 @@ def smooth(path: Path) -> Path:
         return replace(path, path=smooth(path.path))
     if isinstance(path, WithRotation):
         return replace(path, path=smooth(path.path), time_law="quintic")
-    return path if isinstance(path, Waypoints) else replace(path, time_law="quintic")
+    return path if isinstance(path, Waypoints) else replace(path, time_law="quintic")  # type: ignore[type-var]
