@@ -37,10 +37,12 @@ __all__: list[str] = [
     "Tick",
     "Tracker",
     "advice",
+    "at_speed",
     "check_sweep",
     "circle",
     "dh",
     "failed",
+    "fastest",
     "in_plane",
     "line",
     "link_frames",
@@ -48,6 +50,7 @@ __all__: list[str] = [
     "message",
     "named_frames",
     "not_run",
+    "polyline",
     "preset",
     "preset_capsules",
     "processor_kinds",
@@ -1006,6 +1009,12 @@ def advice(status: Status) -> str:
     Advice for the status in one sentence; empty for OK.
     """
 
+def at_speed(
+    path: Path,
+    speed: typing.SupportsFloat | typing.SupportsIndex,
+    acceleration: typing.SupportsFloat | typing.SupportsIndex,
+    jerk: typing.SupportsFloat | typing.SupportsIndex | None,
+) -> Path: ...
 def check_sweep(
     arm: Model,
     path: Path,
@@ -1030,6 +1039,20 @@ def failed(status: Status) -> bool:
     Whether the status means that there is no result.
     """
 
+def fastest(
+    arm: Model,
+    path: Path,
+    scheme: Scheme,
+    q0: numpy.typing.ArrayLike,
+    dt: typing.SupportsFloat | typing.SupportsIndex,
+    intervals: typing.SupportsInt | typing.SupportsIndex,
+    task: str,
+    limits: typing.Any,
+    tip_speed: typing.SupportsFloat | typing.SupportsIndex,
+    tip_acceleration: typing.SupportsFloat | typing.SupportsIndex,
+    bounds: typing.Any,
+    stack_tasks: typing.Any = None,
+) -> tuple[Status, float, int, dict[str, numpy.ndarray]]: ...
 def in_plane(path: Path, axes: numpy.typing.ArrayLike) -> Path: ...
 def line(
     displacement: numpy.typing.ArrayLike, duration: typing.SupportsFloat | typing.SupportsIndex, time_law: str
@@ -1057,6 +1080,12 @@ def named_frames(model: Model, q: numpy.typing.ArrayLike, frame: str) -> numpy.t
     """
 
 def not_run(count: typing.SupportsInt | typing.SupportsIndex) -> numpy.ndarray: ...
+def polyline(
+    points: numpy.typing.ArrayLike,
+    duration: typing.SupportsFloat | typing.SupportsIndex,
+    blend: typing.SupportsFloat | typing.SupportsIndex,
+    time_law: str,
+) -> Path: ...
 def preset(name: str) -> tuple[list[dict[str, typing.Any]], numpy.typing.NDArray[numpy.float64]]: ...
 def preset_capsules(
     name: str,
@@ -1163,6 +1192,8 @@ def waypoints(
     acceleration: typing.SupportsFloat | typing.SupportsIndex | None,
     angular_velocity: typing.SupportsFloat | typing.SupportsIndex | None,
     angular_acceleration: typing.SupportsFloat | typing.SupportsIndex | None,
+    jerk: typing.SupportsFloat | typing.SupportsIndex | None,
+    angular_jerk: typing.SupportsFloat | typing.SupportsIndex | None,
 ) -> Path: ...
 def with_rotation(path: Path, rotation: numpy.typing.ArrayLike, time_law: str) -> Path: ...
 

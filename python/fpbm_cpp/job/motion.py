@@ -277,6 +277,8 @@ def _filled_paths(said: Any, arm: Arm | Robot) -> Any:
 def _filled_path(said: Table, arm: Arm | Robot) -> Table:
     """A path with its defaults; for an arm in space, a planar path is placed in the yz plane."""
     whole = _filled("path", said)
+    if "path" in whole:
+        whole["path"] = _filled_paths(whole["path"], arm)
     if isinstance(arm, PlanarArm) or "in_plane" in whole:
         return whole
     shape = make("path", {key: whole[key] for key in whole if key not in PATH_OPTIONS})

@@ -16,7 +16,7 @@ from ..arms import Arm
 from ..bounds import Bound, bounds_of
 from ..errors import wrong
 from ..joints import JointLimits, limits_of
-from ..paths import InPlane, Path, Waypoints, WithRotation
+from ..paths import AtSpeed, InPlane, Path, Waypoints, WithRotation
 from ..paths import Sequence as PathSequence
 from ..robots import Robot
 from ..schemes import Scheme
@@ -118,4 +118,6 @@ def smooth(path: Path) -> Path:
         return replace(path, path=smooth(path.path))
     if isinstance(path, WithRotation):
         return replace(path, path=smooth(path.path), time_law="quintic")
+    if isinstance(path, AtSpeed):
+        return smooth(path.path)
     return path if isinstance(path, Waypoints) else replace(path, time_law="quintic")  # type: ignore[type-var]
