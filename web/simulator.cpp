@@ -6,8 +6,7 @@
 #include <fpbm/model/planar_arm.hpp>
 #include <fpbm/model/presets.hpp>
 #include <fpbm/model/serial_arm.hpp>
-#include <fpbm/path/in_plane.hpp>
-#include <fpbm/path/with_rotation.hpp>
+#include <fpbm/path/placed.hpp>
 #include <memory>
 #include <vector>
 

@@ -1,10 +1,9 @@
 #pragma once
 
 #include <fpbm/model/serial_arm.hpp>
-#include <fpbm/path/in_plane.hpp>
 #include <fpbm/path/path_follower.hpp>
+#include <fpbm/path/placed.hpp>
 #include <fpbm/path/shapes.hpp>
-#include <fpbm/path/with_rotation.hpp>
 #include <fpbm/realtime/tracker.hpp>
 #include <fpbm/scheme/schemes.hpp>
 

@@ -9,11 +9,11 @@
 #include "arrays.hpp"
 #include "fpbm/any/detail/any_time_law.hpp"
 #include "fpbm/any/detail/convert_path.hpp"
-#include "fpbm/path/in_plane.hpp"
+#include "fpbm/path/at_speed.hpp"
 #include "fpbm/path/path.hpp"
-#include "fpbm/path/sequence.hpp"
+#include "fpbm/path/placed.hpp"
+#include "fpbm/path/polyline.hpp"
 #include "fpbm/path/waypoints.hpp"
-#include "fpbm/path/with_rotation.hpp"
 #include "sources.hpp"
 
 namespace fpbm::bindings {
@@ -107,36 +107,69 @@ Path sequence(const std::vector<const Path*>& paths) {
 using Timing = std::variant<double, std::vector<double>, TipBounds<>>;
 
 template <typename Space>
-Path waypoints_in(const Array& array, const Timing& timing) {
+Path waypoints_in(const std::vector<typename Space::template Point<double>>& points, const Timing& timing) {
   using Spline = Waypoints<Space>;
-  std::vector<typename Space::template Point<double>> points;
-  for (py::ssize_t i = 0; i < array.shape(0); ++i) {
-    points.push_back(point_at<Space>(array.data(i), [i] { return validation::element("points", i); }));
-  }
   if (const auto* duration = std::get_if<double>(&timing)) return {AnyPath<Space>(Spline::lasting(points, *duration))};
   if (const auto* bounds = std::get_if<TipBounds<>>(&timing)) return {AnyPath<Space>(Spline::within(points, *bounds))};
   return {AnyPath<Space>(Spline(points, std::get<std::vector<double>>(timing)))};
 }
 
+/// The entries of an array of points.
+template <typename Space>
+std::vector<typename Space::template Point<double>> points_of(const Array& array) {
+  std::vector<typename Space::template Point<double>> points;
+  for (py::ssize_t i = 0; i < array.shape(0); ++i) {
+    points.push_back(point_at<Space>(array.data(i), [i] { return validation::element("points", i); }));
+  }
+  return points;
+}
+
+/// Calls f(points) with the points of an array, in their space.
+template <typename F>
+Path with_points(const ArrayLike& points, const F& f) {
+  const bool poses = dimensions(points) == 3;
+  const Array array = real_array(points, "points", poses ? 3 : 2);
+  if (poses) return f(Pose{}, points_of<Pose>(array));
+  return array.shape(1) == 2 ? f(Position<2>{}, points_of<Position<2>>(array))
+                             : f(Position<3>{}, points_of<Position<3>>(array));
+}
+
 Path waypoints(const ArrayLike& points, const std::optional<double>& duration, const OptionalArray& times,
                const std::optional<double>& velocity, const std::optional<double>& acceleration,
-               const std::optional<double>& angular_velocity, const std::optional<double>& angular_acceleration) {
+               const std::optional<double>& angular_velocity, const std::optional<double>& angular_acceleration,
+               const std::optional<double>& jerk, const std::optional<double>& angular_jerk) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
-  const bool bounded = velocity || acceleration || angular_velocity || angular_acceleration;
+  const bool bounded = velocity || acceleration || angular_velocity || angular_acceleration || jerk || angular_jerk;
   if (duration.has_value() + times.has_value() + bounded != 1) {
     validation::reject("duration", ", times or bounds of velocity: must be given, exactly one of the three");
   }
-  Timing timing = TipBounds<>{velocity.value_or(kNone), acceleration.value_or(kNone), angular_velocity.value_or(kNone),
-                              angular_acceleration.value_or(kNone)};
+  Timing timing = TipBounds<>{velocity.value_or(kNone),
+                              acceleration.value_or(kNone),
+                              angular_velocity.value_or(kNone),
+                              angular_acceleration.value_or(kNone),
+                              jerk.value_or(kNone),
+                              angular_jerk.value_or(kNone)};
   if (duration) timing = *duration;
   if (times) {
     const auto array = real_array(*times, "times", 1);
     timing = std::vector<double>(array.data(), array.data() + array.size());
   }
-  const bool poses = dimensions(points) == 3;
-  const Array array = real_array(points, "points", poses ? 3 : 2);
-  if (poses) return waypoints_in<Pose>(array, timing);
-  return array.shape(1) == 2 ? waypoints_in<Position<2>>(array, timing) : waypoints_in<Position<3>>(array, timing);
+  return with_points(points, [&](auto space, const auto& each) { return waypoints_in<decltype(space)>(each, timing); });
+}
+
+Path polyline(const ArrayLike& points, double duration, double blend, const std::string& law) {
+  return with_points(points, [&](auto space, const auto& each) {
+    return make_path(Polyline<decltype(space)>(each, blend), duration, law);
+  });
+}
+
+Path at_speed(const Path& path, double speed, double acceleration, const std::optional<double>& jerk) {
+  return std::visit(
+      [&](const auto& any) -> Path {
+        const AtSpeed at(any, speed, acceleration, jerk.value_or(std::numeric_limits<double>::infinity()));
+        return {std::decay_t<decltype(any)>(at)};
+      },
+      path.any);
 }
 
 py::typing::Tuple<Array, Array, Array> sample(const Path& path, double t) {
@@ -169,10 +202,13 @@ have shape (m,), linear rows first, then angular. Outside 0 <= t <= T, the refer
   m.def("lissajous", &lissajous, py::arg("amplitude"), duration, py::arg("frequencies"), py::arg("phase"), law);
   m.def("tricuspid", &tricuspid, py::arg("size"), duration, law);
   m.def("line", &line, py::arg("displacement"), duration, law);
+  m.def("polyline", &polyline, py::arg("points"), duration, py::arg("blend"), law);
   m.def("waypoints", &waypoints, py::arg("points"), duration, py::arg("times"), py::arg("velocity"),
-        py::arg("acceleration"), py::arg("angular_velocity"), py::arg("angular_acceleration"));
+        py::arg("acceleration"), py::arg("angular_velocity"), py::arg("angular_acceleration"), py::arg("jerk"),
+        py::arg("angular_jerk"));
   m.def("in_plane", &in_plane, py::arg("path"), py::arg("axes"));
   m.def("with_rotation", &with_rotation, py::arg("path"), py::arg("rotation"), law);
+  m.def("at_speed", &at_speed, py::arg("path"), py::arg("speed"), py::arg("acceleration"), py::arg("jerk"));
   m.def("sequence", &sequence, py::arg("paths"));
 }
 

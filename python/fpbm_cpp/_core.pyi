@@ -37,6 +37,7 @@ __all__: list[str] = [
     "Tick",
     "Tracker",
     "advice",
+    "at_speed",
     "check_sweep",
     "circle",
     "dh",
@@ -49,6 +50,7 @@ __all__: list[str] = [
     "message",
     "named_frames",
     "not_run",
+    "polyline",
     "preset",
     "preset_capsules",
     "processor_kinds",
@@ -1016,6 +1018,12 @@ def advice(status: Status) -> str:
     Advice for the status in one sentence; empty for OK.
     """
 
+def at_speed(
+    path: Path,
+    speed: typing.SupportsFloat | typing.SupportsIndex,
+    acceleration: typing.SupportsFloat | typing.SupportsIndex,
+    jerk: typing.SupportsFloat | typing.SupportsIndex | None,
+) -> Path: ...
 def check_sweep(
     arm: Model,
     path: Path,
@@ -1080,6 +1088,12 @@ def named_frames(model: Model, q: numpy.typing.ArrayLike, frame: str) -> numpy.t
     """
 
 def not_run(count: typing.SupportsInt | typing.SupportsIndex) -> numpy.ndarray: ...
+def polyline(
+    points: numpy.typing.ArrayLike,
+    duration: typing.SupportsFloat | typing.SupportsIndex,
+    blend: typing.SupportsFloat | typing.SupportsIndex,
+    time_law: str,
+) -> Path: ...
 def preset(name: str) -> tuple[list[dict[str, typing.Any]], numpy.typing.NDArray[numpy.float64]]: ...
 def preset_capsules(
     name: str,
@@ -1186,6 +1200,8 @@ def waypoints(
     acceleration: typing.SupportsFloat | typing.SupportsIndex | None,
     angular_velocity: typing.SupportsFloat | typing.SupportsIndex | None,
     angular_acceleration: typing.SupportsFloat | typing.SupportsIndex | None,
+    jerk: typing.SupportsFloat | typing.SupportsIndex | None,
+    angular_jerk: typing.SupportsFloat | typing.SupportsIndex | None,
 ) -> Path: ...
 def with_rotation(path: Path, rotation: numpy.typing.ArrayLike, time_law: str) -> Path: ...
 

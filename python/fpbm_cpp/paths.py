@@ -11,17 +11,31 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ._core import TIME_LAWS, circle, in_plane, line, lissajous, sequence, tricuspid, waypoints, with_rotation
+from ._core import (
+    TIME_LAWS,
+    at_speed,
+    circle,
+    in_plane,
+    line,
+    lissajous,
+    polyline,
+    sequence,
+    tricuspid,
+    waypoints,
+    with_rotation,
+)
 from ._core import Path as CorePath
 from ._types import ArrayField, DerivedField, OptionalArrayField
 from .errors import require
-from .parameter import POSITIVE, Data, Parameter, data, library_class, parameter, parameters
+from .parameter import NOT_NEGATIVE, POSITIVE, Data, Parameter, data, library_class, parameter, parameters
 
-__all__ = ["Circle", "InPlane", "Line", "Lissajous", "Path", "Sequence", "Tricuspid", "Waypoints", "WithRotation"]
+__all__ = ["AtSpeed", "Circle", "InPlane", "Line", "Lissajous", "Path", "Polyline", "Sequence", "Tricuspid"]
+__all__ += ["Waypoints", "WithRotation"]
 
 # Functions that construct the compiled part of a path, by kind.
 COMPILERS: dict[str, Callable[..., CorePath]] = {
-    each.__name__: each for each in (circle, lissajous, tricuspid, line, waypoints, with_rotation, sequence)
+    each.__name__: each
+    for each in (circle, lissajous, tricuspid, line, polyline, waypoints, with_rotation, sequence, at_speed)
 }
 # Parameters of all shapes.
 DURATION = replace(POSITIVE, help="Duration T of the path.", usual=10.0, unit="s")
@@ -57,6 +71,10 @@ class Path(Data, CorePath):
         For an orientation R at the end and R0 at the start, give rotation_vector(R @ R0.T). Zero keeps the orientation.
         """
         return WithRotation(self, rotation, time_law=time_law)
+
+    def at_speed(self, speed: float, *, acceleration: float, jerk: float | None = None) -> Path:
+        """This path at a constant tool speed: AtSpeed(path, speed, acceleration=acceleration, jerk=jerk)."""
+        return AtSpeed(self, speed, acceleration=acceleration, jerk=jerk)
 
     def then(self, path: Path) -> Path:
         """This path, followed by another path that starts at the end of this path."""
@@ -119,6 +137,32 @@ class Line(Path):
     time_law: str = parameter(like=TIME_LAW, default="sin_squared")
 
 
+@data
+class Polyline(Path):
+    """Straight segments through points, with blends at the corners.
+
+    A blend begins and ends at the distance `blend` from its corner, stays inside the corner, and has continuous
+    curvature. With blend=0, the path stops at each corner. The rotation between two poses is proportional to the
+    distance. s is proportional to the distance along the segments; blends are slower.
+    """
+
+    kind = "polyline"
+    points: ArrayField = parameter(
+        "Positions or poses, at least two. Only displacements from the first point count: a path starts at the tip.",
+        shape="(k, 2) or (k, 3) or (k, 4, 4)",
+        unit="m",
+    )
+    duration: float = parameter(like=DURATION)
+    _: KW_ONLY
+    blend: float = parameter(
+        "Distance from a corner at which the blend begins, at most half of the shorter segment.",
+        NOT_NEGATIVE,
+        default=0.0,
+        unit="m",
+    )
+    time_law: str = parameter(like=TIME_LAW, default="sin_squared")
+
+
 class _Derived(float):
     """A duration that is computed from times or bounds."""
 
@@ -149,6 +193,8 @@ class Waypoints(Path):
     angular_acceleration: float | None = parameter(
         "Largest angular acceleration of the tip.", POSITIVE, default=None, unit="rad/s^2"
     )
+    jerk: float | None = parameter("Largest jerk of the tip.", POSITIVE, default=None, unit="m/s^3")
+    angular_jerk: float | None = parameter("Largest angular jerk.", POSITIVE, default=None, unit="rad/s^3")
 
     def __post_init__(self) -> None:
         if isinstance(self.duration, _Derived):  # dataclasses.replace() passes the derived duration.
@@ -214,8 +260,32 @@ class Sequence(Path):
         super()._finish()
 
 
-# Shapes by the kind in a table, and the options that place and rotate a path.
-PATHS: dict[str, type[Path]] = {shape.kind: shape for shape in (Circle, Lissajous, Tricuspid, Line, Waypoints)}
+@data
+class AtSpeed(Path):
+    """A path at a constant tool speed, with ramps from rest and to rest: path.at_speed(speed, acceleration=...).
+
+    The speed is the speed of the tip's position. Orientations follow the positions. Only the geometry of the given path
+    counts, not its duration and time law. Where the given path stops, as between the parts of a Sequence, or changes
+    its direction abruptly, the tip stops. Without jerk, the acceleration is constant during a ramp. A short path does
+    not reach the speed. The duration of each part between stops is rounded up to 0.01 s by longer ramps.
+    """
+
+    kind = "at_speed"
+    path: Path = parameter("A path that moves the tip in position.")
+    speed: float = parameter("Speed along the path.", POSITIVE, unit="m/s", usual=0.1)
+    _: KW_ONLY
+    acceleration: float = parameter("Largest acceleration along the path.", POSITIVE, unit="m/s^2", usual=0.5)
+    jerk: float | None = parameter("Largest jerk along the path.", POSITIVE, default=None, unit="m/s^3")
+
+    def _finish(self) -> None:
+        require("path", self.path, Path, "a path")
+        super()._finish()
+
+
+# Paths by the kind in a table, and the options that place and rotate a path.
+PATHS: dict[str, type[Path]] = {
+    path.kind: path for path in (Circle, Lissajous, Tricuspid, Line, Polyline, Waypoints, AtSpeed)
+}
 PATH_OPTIONS: dict[str, Parameter] = {
     "in_plane": replace(parameters(InPlane)["plane"], name="in_plane", default=None, usual=None),
     "with_rotation": replace(parameters(WithRotation)["rotation"], name="with_rotation", default=None, usual=None),

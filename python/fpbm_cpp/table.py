@@ -21,7 +21,7 @@ from .errors import ParameterError, not_one_of, suggestion, wrong
 from .joints import Joint, JointLimits, NamedFrame, TreeJoint
 from .obstacle import OBSTACLES
 from .parameter import REQUIRED, Data, Parameter, parameters
-from .paths import PATH_OPTIONS, PATHS, InPlane, WithRotation
+from .paths import PATH_OPTIONS, PATHS, AtSpeed, InPlane, WithRotation
 from .paths import Sequence as PathSequence
 from .robots import ROBOTS, Robot
 from .schemes import SCHEMES
@@ -47,6 +47,7 @@ BOUNDS: Makers = {TaskBounds.kind: TaskBounds}
 WITHIN: dict[Any, Any] = {
     (TaskBounds, "task"): {each.kind: each for each in (PositionTask, AxisTask)},
     (TreeJoint, "joint"): Joint,
+    (AtSpeed, "path"): EVERY_PATH,
 }
 LEVEL = Parameter(
     "level",

@@ -44,7 +44,11 @@ TipBounds<Scalar> random_bounds(Random& random, bool turns) {
   TipBounds<Scalar> bounds;
   bounds.velocity = power(-1.3, 0.3);
   if (random.uniform(0.0, 1.0) < 0.7) bounds.acceleration = power(-1.0, 1.0);
+  // The jerk is tested by differences of accelerations, which have too few digits in float.
+  const bool exact = sizeof(Scalar) == 8;
+  if (exact && random.uniform(0.0, 1.0) < 0.5) bounds.jerk = power(-0.5, 2.0);
   if (turns) {
+    if (exact && random.uniform(0.0, 1.0) < 0.5) bounds.angular_jerk = power(0.0, 2.5);
     bounds.angular_velocity = power(-1.0, 0.5);
     if (random.uniform(0.0, 1.0) < 0.7) bounds.angular_acceleration = power(-0.3, 1.3);
   }
@@ -52,7 +56,8 @@ TipBounds<Scalar> random_bounds(Random& random, bool turns) {
 }
 
 /// Largest fraction of a bound that a path uses, by dense samples and closer samples around the maximum. For
-/// accelerations, the square root of the fraction, which scales with time like the fraction of a velocity.
+/// accelerations, the square root of the fraction, and for jerks, the cube root: they scale with time like the fraction
+/// of a velocity.
 template <typename Path, typename Scalar>
 double largest_share(const Path& path, const TipBounds<Scalar>& bounds) {
   using Space = typename Path::Space;
@@ -60,12 +65,19 @@ double largest_share(const Path& path, const TipBounds<Scalar>& bounds) {
   const auto T = static_cast<double>(path.duration());
   const auto share = [&](double t) {
     const auto at = path.sample(static_cast<Scalar>(t));
-    const Scalar linear = std::max(at.xd.template head<kLinear>().norm() / bounds.velocity,
-                                   std::sqrt(at.xdd.template head<kLinear>().norm() / bounds.acceleration));
+    const double from = std::clamp(t - 1e-5 * T, 0.0, (1 - 1e-5) * T);
+    const double to = std::clamp(t + 1e-5 * T, 1e-5 * T, T);
+    const auto jerk = ((path.sample(static_cast<Scalar>(to)).xdd - path.sample(static_cast<Scalar>(from)).xdd) /
+                       static_cast<Scalar>(to - from))
+                          .eval();
+    const Scalar linear = std::max({at.xd.template head<kLinear>().norm() / bounds.velocity,
+                                    std::sqrt(at.xdd.template head<kLinear>().norm() / bounds.acceleration),
+                                    std::cbrt(jerk.template head<kLinear>().norm() / bounds.jerk)});
     if constexpr (Space::kTurns == 0) return static_cast<double>(linear);
     const Scalar angular =
-        std::max(at.xd.template tail<Space::kRows - kLinear>().norm() / bounds.angular_velocity,
-                 std::sqrt(at.xdd.template tail<Space::kRows - kLinear>().norm() / bounds.angular_acceleration));
+        std::max({at.xd.template tail<Space::kTurns>().norm() / bounds.angular_velocity,
+                  std::sqrt(at.xdd.template tail<Space::kTurns>().norm() / bounds.angular_acceleration),
+                  std::cbrt(jerk.template tail<Space::kTurns>().norm() / bounds.angular_jerk)});
     return static_cast<double>(std::max(linear, angular));
   };
   double most = 0.0;

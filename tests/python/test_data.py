@@ -37,6 +37,15 @@ SOME_PATHS = {
     "waypoints, within": fp.Waypoints(
         POSES, velocity=0.2, acceleration=1.0, angular_velocity=2.0, angular_acceleration=3.0
     ),
+    "waypoints, within bounds on jerk": fp.Waypoints(POSES, jerk=1 / 3, angular_jerk=7.0),
+    "polyline": fp.Polyline([[0, 0], [0.1, 0.2], [1 / 3, 0]], 4.0, blend=0.01, time_law="quintic"),
+    "polyline through poses": fp.Polyline(POSES, 4.0, blend=0.02),
+    "at speed": fp.Circle(0.45, 8.0).in_plane("yz").at_speed(1 / 3, acceleration=0.5),
+    "at speed, in a plane": fp.Tricuspid(0.1, 8.0).at_speed(0.1, acceleration=0.5, jerk=20).in_plane("yz"),
+    "many at speed": fp.Line([1, 0, 0], 2.0)
+    .then(fp.Line([0, 1, 2], 2.0).with_rotation([0, 0, 1]))
+    .at_speed(0.1, acceleration=0.5)
+    .then(fp.Line([0, 0, 0.1], 2.0)),
     "in a plane": fp.Circle(0.45, 8.0).in_plane("yz"),
     "in any plane": fp.Circle(0.45, 8.0).in_plane([[0, 1, 1], [1, 0, 0]]),
     "turned in the plane": fp.Circle(0.45, 8.0).with_rotation(0.3),
@@ -308,11 +317,13 @@ sizes = st.floats(1e-3, 1e3)
 @st.composite
 def shapes(draw):
     duration, law = draw(sizes), draw(st.sampled_from(["sin_squared", "quintic", "constant_speed"]))
-    shape = draw(st.sampled_from(["circle", "lissajous", "tricuspid", "line", "waypoints"]))
+    shape = draw(st.sampled_from(["circle", "lissajous", "tricuspid", "line", "polyline", "waypoints"]))
     if shape == "lissajous":
         return fp.Lissajous(draw(sizes), duration, frequencies=(draw(st.integers(1, 9)), 2), phase=draw(numbers))
     if shape == "line":
         return fp.Line(draw(st.tuples(numbers, numbers)), duration, time_law=law)
+    if shape == "polyline":
+        return fp.Polyline([[0, 0], [draw(sizes), 1], [2, draw(numbers)]], duration, blend=draw(gains), time_law=law)
     if shape == "waypoints":
         return fp.Waypoints([[0, 0], [draw(sizes), 1], [2, draw(numbers)]], duration=duration)
     return (fp.Circle if shape == "circle" else fp.Tricuspid)(draw(sizes), duration, time_law=law)
@@ -321,6 +332,8 @@ def shapes(draw):
 @st.composite
 def any_path(draw):
     path = draw(shapes())
+    if draw(st.booleans()):
+        path = path.at_speed(draw(sizes), acceleration=draw(sizes))
     for piece in draw(st.lists(shapes(), max_size=3)):
         path = path.then(piece)
     if draw(st.booleans()):
@@ -383,7 +396,7 @@ CIRCLE = {"kind": "circle", "radius": 1, "duration": 1}
     [
         (3, PATHS, ["path = 3: must be a table"]),
         ([], PATHS, ["path = []: must have at least one path"]),
-        ({}, PATHS, ["path.kind: is missing: must be one of circle, lissajous, tricuspid, line, waypoints"]),
+        ({}, PATHS, ["path.kind: is missing: must be one of circle, lissajous, tricuspid, line, polyline, "]),
         ({"kind": "cirle"}, PATHS, ["path.kind = 'cirle': must be one of", "; did you mean 'circle'?"]),
         ({"kind": ["circle"]}, PATHS, ["path.kind = ['circle']: must be one of"]),
         ({**CIRCLE, "radius": -1}, PATHS, ["path.radius = -1: must be positive and finite"]),

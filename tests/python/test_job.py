@@ -95,6 +95,14 @@ def test_arms(table: dict[str, Any], arm: Any) -> None:
             fp.Waypoints([[0, 0], [0.1, 0], [0.1, 0.1]], velocity=0.1, acceleration=0.2),
         ),
         (
+            "kind = 'polyline'\npoints = [[0, 0], [0.1, 0], [0.1, 0.1]]\nblend = 0.01",
+            fp.Polyline([[0, 0], [0.1, 0], [0.1, 0.1]], 10.0, blend=0.01),
+        ),
+        (
+            "kind = 'at_speed'\nspeed = 0.2\n[path]\nkind = 'circle'\nradius = 0.2\nin_plane = 'xz'",
+            fp.Circle(0.2, 10.0).in_plane("xz").at_speed(0.2, acceleration=0.5),
+        ),
+        (
             "kind = 'circle'\nin_plane = 'xy'\nwith_rotation = [0, 0, 1]\nrotation_time_law = 'sin_squared'",
             fp.Circle(0.1, 10.0).in_plane("xy").with_rotation([0, 0, 1], time_law="sin_squared"),
         ),
@@ -391,7 +399,7 @@ def test_invalid_files_are_rejected(tmp_path: Path) -> None:
 # Errors
 
 ARM = "[arm]\nkind = 'preset'\nname = 'panda'\n"
-SHAPES = "circle, lissajous, tricuspid, line, waypoints"
+SHAPES = "circle, lissajous, tricuspid, line, polyline, waypoints, at_speed"
 KINDS = "mvn, wmvn, man, wmvn_acceleration, balanced, fpbm"
 LAWS = "sin_squared, quintic, constant_speed"
 

@@ -11,6 +11,7 @@ SHAPES = {
     "lissajous": lambda law: fp.Lissajous((0.4, 0.3), 8.0, frequencies=(3, 2), phase=0.7, time_law=law),
     "tricuspid": lambda law: fp.Tricuspid(0.3, 8.0, time_law=law),
     "line": lambda law: fp.Line([0.5, -1.0], 8.0, time_law=law),
+    "polyline": lambda law: fp.Polyline([[1, 2], [1, 1], [1.5, 1]], 8.0, blend=0.2, time_law=law),
 }
 
 
@@ -31,7 +32,7 @@ def test_derivatives(path):
 def test_ends(path):
     np.testing.assert_allclose(path.sample(0.0)[0], 0, atol=1e-15)
     x, xd, xdd = path.sample(path.duration + 1.0)
-    np.testing.assert_allclose(x, [0.5, -1.0] if path.kind == "line" else 0, atol=1e-14)
+    np.testing.assert_allclose(x, [0.5, -1.0] if path.kind in ("line", "polyline") else 0, atol=1e-14)
     assert not xd.any()
     assert not xdd.any()
     assert not np.any(path.sample(-1.0)[1:])
@@ -153,6 +154,23 @@ def test_repr_has_the_arguments():
         (lambda: fp.Waypoints([[0, 0], [1, 1]], times=[1]), "times has 1 entries: must have 2, one per point"),
         (lambda: fp.Waypoints([[0, 0], [1, 1]], velocity=0), "velocity = 0: must be positive"),
         (lambda: fp.Waypoints([[0, 0], [1, 1]], angular_velocity=1.0), "bounds: at least one bound must limit the tip"),
+        (lambda: fp.Waypoints([[0, 0], [1, 1]], jerk=-1.0), "jerk = -1: must be positive"),
+        (lambda: fp.Waypoints([[0, 0], [1, 1]], angular_jerk=1.0), "bounds: at least one bound must limit the tip"),
+        (lambda: fp.Polyline([[0, 0], [1, 1]], 0.0), "duration = 0: must be positive"),
+        (lambda: fp.Polyline([[0, 0], [1, 1]], 1.0, blend=-1), "blend = -1: must be finite and not negative"),
+        (lambda: fp.Polyline([[0, 0], [0, 0]], 1.0), r"points\[1\]: must have another position than the previous"),
+        (lambda: fp.Polyline([[0, 0]], 1.0), "points has 1 entries: must have at least 2"),
+        (lambda: fp.Polyline([[0, 0], [1, np.nan]], 1.0), r"points\[1, 1\] = nan: must be finite"),
+        (lambda: fp.Circle(0.1, 1.0).at_speed(0, acceleration=1), "speed = 0: must be positive"),
+        (lambda: fp.Circle(0.1, 1.0).at_speed(np.nan, acceleration=1), "speed = nan: must be positive"),
+        (lambda: fp.Circle(0.1, 1.0).at_speed(1, acceleration=-1), "acceleration = -1: must be positive"),
+        (lambda: fp.Circle(0.1, 1.0).at_speed(1, acceleration=1, jerk=0), "jerk = 0: must be positive"),
+        (lambda: fp.Line([0, 0], 1.0).at_speed(1, acceleration=1), "path: has no length"),
+        (
+            lambda: fp.Line([1, 0], 1.0).then(fp.Line([0, 0], 1.0).with_rotation(1.0)).at_speed(1, acceleration=1),
+            "path: rotates the tip in one place at t = 1",
+        ),
+        (lambda: fp.AtSpeed("circle", 1, acceleration=1), "path = 'circle': must be a path"),
         (lambda: fp.Waypoints(np.zeros((2, 4, 4)), duration=1), r"points\[0\]: must be a homogeneous matrix"),
     ],
 )

@@ -5,9 +5,8 @@
 
 #include "fpbm/model/presets.hpp"
 #include "fpbm/model/serial_arm.hpp"
-#include "fpbm/path/in_plane.hpp"
 #include "fpbm/path/path.hpp"
+#include "fpbm/path/placed.hpp"
 #include "fpbm/path/shapes.hpp"
-#include "fpbm/path/with_rotation.hpp"
 #include "fpbm/realtime/tracker.hpp"
 #include "fpbm/scheme/schemes.hpp"

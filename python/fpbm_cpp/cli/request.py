@@ -100,7 +100,7 @@ def _job_options(kind: bool, path: bool, clear: bool) -> Iterator[JobOption]:
         if kind or section != "scheme":
             words = Word(list(SECTIONS[section]))
             yield JobOption(section, "kind", f"--{section}", type=words, help=f"Kind; default: {usual}.")
-        for key in dict.fromkeys(key for each in keys for key in keys[each]):
+        for key in dict.fromkeys(key for each in keys for key in keys[each] if key != section):
             having = [each for each in keys if key in keys[each]]
             yield _option(section, key, keys[having[0]][key], of=having if len(having) < 3 else [])
     text = (

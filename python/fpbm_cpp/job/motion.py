@@ -298,6 +298,8 @@ def _filled_paths(said: Any, arm: Arm | Robot, radius: float | None = None) -> A
         return {task: _filled_paths(each, arm, radius) for task, each in said.items()}
     given = {"radius": radius, **said} if radius is not None and said["kind"] == Circle.kind else said
     whole = _filled("path", given)
+    if "path" in whole:
+        whole["path"] = _filled_paths(whole["path"], arm, radius)
     if isinstance(arm, PlanarArm) or "in_plane" in whole:
         return whole
     shape = make("path", {key: whole[key] for key in whole if key not in PATH_OPTIONS})

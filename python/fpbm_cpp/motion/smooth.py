@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ..paths import Circle, InPlane, Line, Lissajous, Path, Sequence, Tricuspid, WithRotation
+from ..paths import AtSpeed, Circle, InPlane, Line, Lissajous, Path, Polyline, Sequence, Tricuspid, WithRotation
 from .run_data import Paths
 
 
@@ -20,6 +20,8 @@ def smooth(path: Path) -> Path:
         return replace(path, path=smooth(path.path))
     if isinstance(path, WithRotation):
         return replace(path, path=smooth(path.path), time_law="quintic")
-    if isinstance(path, (Circle, Lissajous, Tricuspid, Line)):
+    if isinstance(path, AtSpeed):
+        return smooth(path.path)
+    if isinstance(path, (Circle, Lissajous, Tricuspid, Line, Polyline)):
         return replace(path, time_law="quintic")
     return path

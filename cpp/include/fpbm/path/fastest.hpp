@@ -11,8 +11,8 @@
 #include "fpbm/model/joint.hpp"
 #include "fpbm/path/detail/clock_bounds.hpp"
 #include "fpbm/path/detail/clock_solver.hpp"
+#include "fpbm/path/path.hpp"
 #include "fpbm/path/spline.hpp"
-#include "fpbm/path/time_law.hpp"
 
 namespace fpbm {
 

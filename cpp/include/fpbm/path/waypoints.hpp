@@ -11,6 +11,7 @@
 #include "fpbm/core/detail/validation.hpp"
 #include "fpbm/geometry/space.hpp"
 #include "fpbm/path/detail/least_duration.hpp"
+#include "fpbm/path/detail/point.hpp"
 #include "fpbm/path/detail/tip_bounds.hpp"
 #include "fpbm/path/reference.hpp"
 #include "fpbm/path/spline.hpp"
@@ -55,12 +56,15 @@ class Waypoints {
     require_bound("acceleration", bounds.acceleration);
     require_bound("angular_velocity", bounds.angular_velocity);
     require_bound("angular_acceleration", bounds.angular_acceleration);
+    require_bound("jerk", bounds.jerk);
+    require_bound("angular_jerk", bounds.angular_jerk);
     const Waypoints unit = lasting(points, Scalar(1));
     const Scalar duration = LeastDuration<Space, kCoordinates, Scalar>(unit.spline_, bounds).of([&unit](Scalar t) {
       return unit.sample(t);
     });
     if (!(duration > Scalar(0))) {
-      validation::reject("bounds", ": at least one bound must limit the tip: give a bound on velocity or acceleration");
+      validation::reject("bounds",
+                         ": at least one bound must limit the tip: give a bound on velocity, acceleration or jerk");
     }
     return lasting(points, std::ceil(Scalar(100.5) * duration) / Scalar(100));
   }
@@ -98,7 +102,7 @@ class Waypoints {
   /// Points of the spline: displacements from the first point. The sign of each quaternion is chosen for the smaller
   /// angle from the previous quaternion.
   static std::vector<Coordinates> rows(const std::vector<Point>& points) {
-    require_points(points);
+    require_points<Space, Scalar>(points);
     std::vector<Coordinates> result(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
       if constexpr (kTurns) {
@@ -113,20 +117,6 @@ class Waypoints {
       }
     }
     return result;
-  }
-
-  static void require_points(const std::vector<Point>& points) {
-    if (points.size() < 2) {
-      validation::reject("points", " has ", points.size(), " entries: must have at least 2");
-    }
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      Scalar numbers[Space::kSize];
-      Space::store(points[i], numbers);
-      for (int k = 0; k < Space::kSize; ++k) {
-        const validation::Argument point = validation::element("points", static_cast<Eigen::Index>(i));
-        validation::require_finite(validation::element(point, k), numbers[k]);
-      }
-    }
   }
 
   static const std::vector<Scalar>& required(const std::vector<Scalar>& times, std::size_t points) {
@@ -149,7 +139,7 @@ class Waypoints {
 
   /// Time of each point as a fraction of the duration.
   static std::vector<Scalar> time_fractions(const std::vector<Point>& points) {
-    require_points(points);
+    require_points<Space, Scalar>(points);
     std::vector<Scalar> lengths(points.size(), Scalar(0));
     std::vector<Scalar> angles(points.size(), Scalar(0));
     for (std::size_t i = 1; i < points.size(); ++i) {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "fpbm/core/detail/validation.hpp"
-#include "fpbm/path/time_law.hpp"
+#include "fpbm/path/path.hpp"
 
 namespace fpbm {
 

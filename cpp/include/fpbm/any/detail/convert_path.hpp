@@ -5,8 +5,7 @@
 #include "fpbm/any/detail/any_path.hpp"
 #include "fpbm/core/detail/validation.hpp"
 #include "fpbm/geometry/space.hpp"
-#include "fpbm/path/in_plane.hpp"
-#include "fpbm/path/with_rotation.hpp"
+#include "fpbm/path/placed.hpp"
 
 namespace fpbm {
 

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
+#include "fpbm/core/detail/validation.hpp"
 #include "fpbm/geometry/rotation.hpp"
 
 /// Checks and corrections of points that come from outside of the library.
@@ -49,6 +52,22 @@ template <typename Derived>
 template <typename Scalar>
 [[nodiscard]] Scalar extent(const Transform<Scalar>& x) noexcept {
   return std::max(extent(x.p), Scalar(1));
+}
+
+/// Requires at least two points of a path, and finite numbers.
+template <typename Space, typename Scalar>
+void require_points(const std::vector<typename Space::template Point<Scalar>>& points) {
+  if (points.size() < 2) {
+    validation::reject("points", " has ", points.size(), " entries: must have at least 2");
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    Scalar numbers[Space::kSize];
+    Space::store(points[i], numbers);
+    for (int k = 0; k < Space::kSize; ++k) {
+      const validation::Argument point = validation::element("points", static_cast<Eigen::Index>(i));
+      validation::require_finite(validation::element(point, k), numbers[k]);
+    }
+  }
 }
 
 }  // namespace fpbm

@@ -11,6 +11,8 @@ struct TipBounds {
   Scalar acceleration = std::numeric_limits<Scalar>::infinity();          ///< [m/s²]
   Scalar angular_velocity = std::numeric_limits<Scalar>::infinity();      ///< [rad/s]
   Scalar angular_acceleration = std::numeric_limits<Scalar>::infinity();  ///< [rad/s²]
+  Scalar jerk = std::numeric_limits<Scalar>::infinity();                  ///< [m/s³]
+  Scalar angular_jerk = std::numeric_limits<Scalar>::infinity();          ///< [rad/s³]
 };
 
 }  // namespace fpbm

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "fpbm/core/types.hpp"
+#include "fpbm/path/detail/fixed_axis.hpp"
 #include "fpbm/path/detail/time_optimal_axis.hpp"
-#include "fpbm/path/fixed_axis.hpp"
 #include "fpbm/target/detail/target_bounds.hpp"
 
 namespace fpbm {
