@@ -61,7 +61,7 @@ class ClockSolver {
   /// The clock. The duration exceeds the duration at the minimum by at most the factor kGap, for convex bounds.
   [[nodiscard]] ClockSpline solve() {
     constexpr double kGap = 5e-4;
-    constexpr double kStart = 0.5;   // Of the largest constant x.
+    constexpr double kStart = 0.5;   // Fraction of the largest constant x.
     constexpr double kGrowth = 6.0;  // Factor of τ. 4 to 10 need 25 to 35 steps.
     constexpr int kMostSteps = 200;  // Random paths need at most 60.
     std::vector<double>& c = spline_.coefficients();
