@@ -286,7 +286,7 @@ TEST(SpacePaths, invalid_paths_are_rejected) {
             }),
             "points[1]: must differ from the previous point");
   EXPECT_EQ(refusal([&] { return PlanarWaypoints::within(points, {}); }),
-            "bounds: at least one bound must limit the tip: give a bound on velocity or acceleration");
+            "bounds: at least one bound must limit the tip: give a bound on velocity, acceleration or jerk");
   EXPECT_EQ(refusal([&] { return PlanarWaypoints::within(points, {0.0}); }), "velocity = 0: must be positive");
 }
 

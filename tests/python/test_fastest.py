@@ -65,6 +65,62 @@ def test_the_circle_that_a_tracker_leaves_is_kept():
     assert tracked.max_error() > 0.01
 
 
+@pytest.mark.parametrize("duration", [2.0, 1.5, 1.2, 1.0, 0.5])
+def test_a_tracker_keeps_the_circle(duration):
+    """With keep_path, the motion takes 1.05 of the least time, or the time of a slower path."""
+    least = fp.fastest(PANDA, CIRCLE, MVN, BENT, task="pose").t[-1]
+    run = fp.track(PANDA, circle_of(duration), fp.MVN(k=5), BENT, task="pose", hold=0.1, keep_path=True)
+    assert run.status.code is fp.Status.OK
+    assert run.scale is not None
+    assert run.scale.min() == 1.0
+    assert np.abs(run.error).max() < 1e-6
+    assert max(ratios(run)) <= 1 + 1e-9
+    np.testing.assert_allclose(run.t[-1] - 0.1, max(duration, 1.05 * least), atol=2e-3)
+
+
+def circle_of(duration: float) -> fp.Path:
+    return fp.Circle(0.15, duration).in_plane("yz")
+
+
+@pytest.mark.parametrize("name", ["panda", "fr3", "iiwa14", "gen3", "ur5e", "xarm7"])
+def test_a_tracker_keeps_random_paths(name):
+    arm = fp.SerialArm.preset(name)
+    random = np.random.default_rng(5)
+    low, high = np.maximum(arm.limits.lower, -2.5), np.minimum(arm.limits.upper, 2.5)
+    kept = 0
+    while kept < 4:
+        q0 = low + (high - low) * random.uniform(0.3, 0.7, arm.dof)
+        points = np.cumsum(np.vstack([np.zeros(3), random.normal(0, 0.05, (random.integers(2, 6), 3))]), axis=0)
+        task = "pose" if arm.dof > 6 else "position"
+        try:
+            least = fp.fastest(arm, fp.Waypoints(points, duration=1), MVN, q0, task=task)
+        except fp.ParameterError:
+            continue
+        fast = fp.Waypoints(points, duration=float(least.t[-1]) / 2)
+        run = fp.track(arm, fast, fp.MVN(k=5), q0, task=task, hold=0.1, keep_path=True)
+        assert np.abs(run.error).max() < 1e-5
+        assert max(ratios(run)) <= 1 + 1e-9
+        assert run.replay() == run
+        kept += 1
+
+
+def test_two_arms_keep_their_paths():
+    robot = fp.Robot.preset("two_pandas")
+    q0 = np.concatenate([BENT, BENT])
+    stack = fp.Stack([fp.PoseTask("left_tip", name="left", k=5), fp.PoseTask("right_tip", name="right", k=5)])
+    paths = {"left": fp.Circle(0.1, 0.3).in_plane("yz"), "right": fp.Line((0.0, 0.05, 0.1), 0.2)}
+    run = fp.track(robot, paths, MVN, q0, stack=stack, keep_path=True, hold=0.1)
+    assert max(np.abs(each).max() for each in run.errors.values()) < 1e-5
+    assert max(ratios(run)) <= 1 + 1e-9
+
+
+def test_a_kept_path_needs_a_scheme_at_velocity_level_and_a_path_that_can_be_followed():
+    with pytest.raises(fp.ParameterError, match="keep_path needs a scheme at velocity level"):
+        fp.track(PANDA, CIRCLE, fp.MAN(null_damping=2), BENT, task="pose", keep_path=True)
+    with pytest.raises(fp.ParameterError, match=r"followed to the fraction 0\.\d+ only"):
+        fp.track(PANDA, fp.Circle(0.6, 1.0).in_plane("yz"), MVN, BENT, task="pose", keep_path=True)
+
+
 @pytest.mark.parametrize("dt", [1e-3, 4e-3, 1 / 500, 0.01])
 def test_the_motion_lasts_a_multiple_of_the_step(dt):
     run = fp.fastest(PANDA, CIRCLE, MVN, BENT, task="pose", dt=dt)

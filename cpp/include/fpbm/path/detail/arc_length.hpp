@@ -86,8 +86,8 @@ class ArcLength {
  private:
   using Twist = Vector<Space::kRows, Scalar>;
 
-  static constexpr int kIntervals = 64;     // KI
-  static constexpr int kPartIntervals = 8;  // KP
+  static constexpr int kIntervals = 64;     // Of the whole path, before halvings: 16 to 256 pass AtSpeed.*.
+  static constexpr int kPartIntervals = 8;  // Of a part, before halvings: 2 to 32 pass AtSpeed.*.
   static constexpr Scalar kTolerance =
       Scalar(512) * std::numeric_limits<Scalar>::epsilon();  // Ratio to the whole length.
   // Smallest speed, of the largest speed, that is not a stop; smallest abrupt change of direction [rad].
