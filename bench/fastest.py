@@ -7,7 +7,8 @@ orientation (position tasks with 6 joints). Paths that leave the workspace or th
    distance from the path, and processor time of fp.fastest() per second of motion.
 2. TOPP-RA (`pip install toppra`) on the same joint paths and bounds: without bounds on jerk, and the duration with
    bounds on jerk relative to the duration of TOPP-RA, which has no bounds on jerk.
-3. Weights: the duration under WMVN with the weights 1/A^2, A the bounds on acceleration, relative to MVN.
+3. Trackers with keep_path, on paths that last half of the least duration: the largest errors.
+4. Weights: the duration under WMVN with the weights 1/A^2, A the bounds on acceleration, relative to MVN.
 """
 
 from __future__ import annotations
@@ -96,6 +97,14 @@ def duration_with_weights(run: fp.Run, weights: Array) -> float:
     return float(again.t[-1])
 
 
+def error_of_tracker(run: fp.Run) -> float:
+    """Largest error [m, rad] of a tracker that keeps the path, which lasts half of the least duration."""
+    assert isinstance(run.path, fp.Waypoints)
+    path = fp.Waypoints(run.path.points, duration=float(run.t[-1]) / 2)
+    kept = fp.track(run.arm, path, fp.MVN(k=5.0), run.q0, task=run.task, limits=run.limits, keep_path=True)
+    return float(np.abs(kept.error).max())
+
+
 def print_table(headings: list[str], rows: list[list[Any]]) -> None:
     print("| " + " | ".join(headings) + " |\n|" + "---|" * len(headings))
     for row in rows:
@@ -109,6 +118,7 @@ def main() -> int:
     given = parser.parse_args()
     worst: dict[str, list[list[float]]] = defaultdict(list)
     against: dict[str, list[list[float]]] = defaultdict(list)
+    tracked: list[float] = []
     for name in ARMS:
         random = np.random.default_rng(given.seed)
         arm = fp.SerialArm.preset(name)
@@ -118,6 +128,7 @@ def main() -> int:
             worst[name].append([*ratios(run), np.abs(run.error).max(), 1e3 * seconds, run.t[-1]])
             loose = fp.fastest(arm, run.path, run.scheme, run.q0, dt=DT, task=run.task, limits=free)
             reference = toppra_duration(loose)
+            tracked.append(error_of_tracker(run))
             weighted = duration_with_weights(run, 1.0 / bounded.acceleration**2)
             against[name].append([loose.t[-1] / reference, run.t[-1] / reference, weighted / run.t[-1]])
     rows = []
@@ -135,6 +146,9 @@ def main() -> int:
         rows.append([name, *(f"{np.median(x):.3f}, {x.max():.3f}" for x in peers), f"{np.nanmedian(weighted):.3f}"])
     head = ["arm", "without jerk bounds / TOPP-RA: median, largest", "with jerk bounds / TOPP-RA without"]
     print_table([*head, "weights / MVN: median"], rows)
+    errors = np.array(tracked)
+    inside = np.count_nonzero(errors < 1e-5)
+    print(f"\ntrackers with keep_path: {inside} of {len(errors)} within 1e-5 m and rad, largest {errors.max():.1e}")
     return 0
 
 

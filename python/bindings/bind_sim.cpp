@@ -12,7 +12,6 @@
 #include <variant>
 #include <vector>
 
-#include "fpbm/path/detail/timed_path.hpp"
 #include "motion.hpp"
 #include "read.hpp"
 #include "sources.hpp"
@@ -50,6 +49,7 @@ std::optional<LimitOptions> limit_options_of(const py::object& given, const Mode
   limit_options.options.recover_start = py::cast<bool>(given.attr("recover_start"));
   limit_options.keeps_path = py::cast<bool>(given.attr("keep_path"));
   limit_options.reserve = number("reserve");
+  validation::require_non_negative("reserve", limit_options.reserve);
   return limit_options;
 }
 
@@ -154,6 +154,7 @@ std::shared_ptr<const FastestClock> kept_clock(const Motion<Space>& motion, doub
   if (motion.scheme.level != Level::kVelocity) {
     validation::reject("keep_path", " needs a scheme at velocity level, for example MVN() or WMVN(weights)");
   }
+  if (motion.start.qd.cwiseAbs().maxCoeff() > 0.0) validation::reject("qd0", ": must be zero with keep_path");
   const JointPath<kDynamic> along = joint_path_of(motion, duration);
   if (!along.joints) {
     validation::reject("path", ": can be followed to the fraction ", along.result.time / duration,

@@ -117,6 +117,11 @@ def test_two_arms_keep_their_paths():
 def test_a_kept_path_needs_a_scheme_at_velocity_level_and_a_path_that_can_be_followed():
     with pytest.raises(fp.ParameterError, match="keep_path needs a scheme at velocity level"):
         fp.track(PANDA, CIRCLE, fp.MAN(null_damping=2), BENT, task="pose", keep_path=True)
+    for wrong in (-0.1, np.nan, np.inf):
+        with pytest.raises(fp.ParameterError, match="reserve = "):
+            fp.track(PANDA, CIRCLE, MVN, BENT, task="pose", keep_path=True, reserve=wrong)
+    with pytest.raises(fp.ParameterError, match="qd0: must be zero"):
+        fp.track(PANDA, CIRCLE, MVN, BENT, task="pose", keep_path=True, qd0=np.full(7, 0.01))
     with pytest.raises(fp.ParameterError, match=r"followed to the fraction 0\.\d+ only"):
         fp.track(PANDA, fp.Circle(0.6, 1.0).in_plane("yz"), MVN, BENT, task="pose", keep_path=True)
 

@@ -10,6 +10,7 @@
 #include "fpbm/core/detail/validation.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/model/kinematics.hpp"
+#include "fpbm/path/detail/timed_path.hpp"
 #include "fpbm/path/detail/tip_bounds.hpp"
 #include "fpbm/path/fastest.hpp"
 #include "fpbm/path/spline.hpp"
