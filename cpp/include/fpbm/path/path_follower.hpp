@@ -56,7 +56,7 @@ class PathFollower {
   [[nodiscard]] Scalar time() const noexcept { return now_.q; }
   [[nodiscard]] bool done() const noexcept { return now_.q >= path_.duration(); }
 
-  /// Reference after `seconds` [s].
+  /// Reference after `seconds` ≥ 0 [s].
   [[nodiscard]] Reference<Space, Scalar> ahead(Scalar seconds) const noexcept {
     const auto [p, r, rd] = after(seconds);
     if (done() || p > path_.duration()) return Reference<Space, Scalar>::hold(end_);
