@@ -29,7 +29,7 @@ class FastestClock {
   /// std::invalid_argument if a bound is missing, a joint leaves its range, or the path has no length.
   template <int N, typename AddBounds>
   FastestClock(const Spline<N>& joints, const JointLimits<N>& limits, const AddBounds& add_bounds)
-      : start_(joints.times().front()), rate_(1.0), clock_(joints.times().size() - 1, width_of(joints)) {
+      : start_(joints.times().front()), clock_(joints.times().size() - 1, width_of(joints)) {
     const JointLimits<N> complete = limits.complete();
     require_acceleration(complete);
     const auto at = [&](std::size_t i, double f) {
@@ -161,7 +161,7 @@ class FastestClock {
   }
 
   double start_;
-  double rate_;  ///< Rate of the clock relative to the solution.
+  double rate_ = 1.0;  ///< Rate of the clock relative to the solution.
   ClockSpline clock_;
   std::vector<double> times_;  ///< Time of the solution at the start of each interval, and at the end.
 };

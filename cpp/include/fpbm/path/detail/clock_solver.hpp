@@ -108,10 +108,11 @@ class ClockSolver {
     const double decrement = direction();
     constexpr double kArmijo = 0.1;
     constexpr double kShorter = 0.6;
-    constexpr double kShortest = 1e-8;
+    constexpr int kLengths = 40;  // The shortest step is 1e-9 of the step of Newton's method.
     const double before = merit(spline_, emphasis);
     ClockSpline next = spline_;
-    for (double length = 1.0; length > kShortest; length *= kShorter) {
+    double length = 1.0;
+    for (int k = 0; k < kLengths; ++k, length *= kShorter) {
       for (std::size_t i = 0; i < step_.size(); ++i) {
         next.coefficients()[i] = spline_.coefficients()[i] + length * step_[i];
       }
