@@ -127,6 +127,8 @@ def test_options_reproduce_the_run(q0):
             fp.TaskBounds(fp.PositionTask(rows=("x",)), upper=5),
         ),
         "recover_start": False,
+        "keep_path": False,
+        "reserve": 0.05,
         "stack": None,
     }
     run = fp.track(arm, SMOOTH, scheme, q0, **given)
