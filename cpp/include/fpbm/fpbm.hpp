@@ -35,7 +35,7 @@
 #include "fpbm/objective/manipulability_ascent.hpp"
 #include "fpbm/objective/null_space.hpp"
 #include "fpbm/path/at_speed.hpp"
-#include "fpbm/path/fastest.hpp"
+#include "fpbm/path/fastest_clock.hpp"
 #include "fpbm/path/path.hpp"
 #include "fpbm/path/path_follower.hpp"
 #include "fpbm/path/placed.hpp"

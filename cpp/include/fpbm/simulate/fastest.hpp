@@ -12,7 +12,7 @@
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/path/detail/timed_path.hpp"
 #include "fpbm/path/detail/tip_bounds.hpp"
-#include "fpbm/path/fastest.hpp"
+#include "fpbm/path/fastest_clock.hpp"
 #include "fpbm/path/spline.hpp"
 #include "fpbm/simulate/detail/anchored_path.hpp"
 #include "fpbm/simulate/detail/motion.hpp"

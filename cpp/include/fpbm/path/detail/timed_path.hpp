@@ -3,7 +3,7 @@
 #include <memory>
 #include <utility>
 
-#include "fpbm/path/fastest.hpp"
+#include "fpbm/path/fastest_clock.hpp"
 #include "fpbm/path/reference.hpp"
 
 namespace fpbm {
