@@ -66,7 +66,8 @@ def lay_out(
     """Figure of these panels, and the axes of each."""
     columns, rows = _columns(panels)
     width = PAGE if len(columns) > 1 else COLUMN
-    foot = foot_height(joint_names(run.arm) if any(panel.of_joints for panel in panels.values()) else [], width)
+    entries = [*joint_names(run.arm), "bound"] if any(panel.of_joints for panel in panels.values()) else []
+    foot = foot_height(entries, width)
     # Up to three panels beside the arm fill a slide of 16:9.
     slide = SLIDE - foot - (TITLE_ROW * (title.count("\n") + 1) if title else 0.0)
     body = slide if "arm" in panels and rows <= 3 else ROW * rows + 0.25 if len(panels) > 1 else ONE
