@@ -133,19 +133,21 @@ class FastestClock {
     Vector<N> velocity = limits.velocity;
     for (Eigen::Index k = 0; k < velocity.size(); ++k) {
       const double q = d[0](k);
-      if (q < limits.lower(k) || q > limits.upper(k)) {
+      if (q < limits.lower(k) - kRoundOff || q > limits.upper(k) + kRoundOff) {
         validation::reject("path", ": leaves the range of joint ", k, " at the fraction ",
                            (p - start_) / (clock_.width() * static_cast<double>(clock_.intervals())), ": position ", q,
                            " is not in [", limits.lower(k), ", ", limits.upper(k), "]");
       }
       if (std::isfinite(limits.deceleration(k))) {
-        const double distance = d[1](k) > 0.0 ? limits.upper(k) - q : q - limits.lower(k);
+        const double distance = std::max(d[1](k) > 0.0 ? limits.upper(k) - q : q - limits.lower(k), 0.0);
         const double envelope = std::sqrt(2.0 * limits.deceleration(k) * distance) - limits.velocity_offset(k);
         velocity(k) = std::min(velocity(k), std::max(envelope, kLeastSpeed * velocity(k)));
       }
     }
     return ClockBounds(std::array<Vector<N>, 3>{d[1], d[2], d[3]}, velocity, limits.acceleration, limits.jerk);
   }
+  /// Round-off error of the spline for a joint that stands at an end of its range [rad] or [m].
+  static constexpr double kRoundOff = 1e-12;
   /// Least velocity in a braking envelope, as a fraction of the bound: at the end of its range, a joint may stand.
   static constexpr double kLeastSpeed = 1e-6;
 

@@ -8,7 +8,7 @@
 
 namespace fpbm {
 
-/// A path with the clock of FastestClock instead of its own time law. Copies share the clock.
+/// A path whose time law is replaced by the clock of FastestClock. Copies share the clock.
 template <typename Path>
 class TimedPath {
  public:
