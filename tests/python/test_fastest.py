@@ -55,7 +55,7 @@ def test_random_paths_are_kept_within_all_bounds(name):
 
 
 def test_the_circle_that_a_tracker_leaves_is_kept():
-    """A tracker leaves this circle in 1.5 s by 13 cm, and the fastest motion without bounds on jerk takes 1.19 s."""
+    """A tracker leaves this circle in 1.5 s by centimetres. Without bounds on jerk, the least time is 1.19 s."""
     run = fp.fastest(PANDA, CIRCLE, MVN, BENT, task="pose")
     assert_kept(run)
     assert 1.185 <= run.t[-1] <= 1.2
