@@ -33,6 +33,7 @@ PACKAGES = {
     "TSID": ["tsid"],
     "KDL": [],
 }
+PATH_PACKAGES = {"TOPP-RA": ["toppra"], "Ruckig": ["ruckig", "numpy"]}
 Q0 = np.array([0, -0.3, 0, -2.2, 0, 2, 0.785])
 MOVE = np.array([0.06, 0.08, 0])
 END = """
@@ -67,7 +68,8 @@ def environment(name: str) -> Path:
     python = folder / "bin" / "python"
     if not python.exists():
         subprocess.run([sys.executable, "-m", "venv", folder], check=True)
-        pip = [python, "-m", "pip", "install", "--quiet", "--no-compile", "--only-binary", ":all:", *PACKAGES[name]]
+        pip = [python, "-m", "pip", "install", "--quiet", "--no-compile", "--only-binary", ":all:"]
+        pip += {**PACKAGES, **PATH_PACKAGES}[name]
         if subprocess.run(pip, check=False).returncode != 0:
             shutil.rmtree(folder)
             pytest.skip(f"{name} cannot be installed")
@@ -117,3 +119,41 @@ def test_program(name: str, ours: Any, tmp_path: Path) -> None:
         assert position < 1e-3
         assert rotation < 0.01
     print(f"\njoints of {name} and of fpbm_cpp differ by at most {np.abs(q - ours).max():.1e} rad")
+
+
+def distance_from(line: Any, points: Any) -> float:
+    """Largest distance of points from a polyline [m]."""
+    start, steps = line[:-1], np.diff(line, axis=0)
+    worst = 0.0
+    for point in points:
+        shares = np.sum((point - start) * steps, axis=1) / np.maximum(np.sum(steps**2, axis=1), 1e-30)
+        nearest = start + np.clip(shares, 0, 1)[:, None] * steps
+        worst = max(worst, np.linalg.norm(point - nearest, axis=1).min())
+    return worst
+
+
+@pytest.mark.skipif("FPBM_PEERS" not in os.environ, reason="make peers installs the libraries")
+@pytest.mark.parametrize("name", PATH_PACKAGES)
+def test_path_program(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    given, (bounds, program), (theirs,) = programs("")[0], programs("Paths"), programs(name)
+    ours: dict[str, Any] = {"np": np, "fp": fp, "arm": fp.SerialArm.preset("panda")}
+    exec(f"{given}\n{bounds}\n{program}", ours)
+    arm, path = ours["arm"], ours["path"]
+    line = arm.forward(Q0)[:3, 3] + [path.sample(t)[0] for t in np.linspace(0, path.duration, 2001)]
+    q = run(environment(name), tmp_path, f"import numpy as np\n{given}\n{bounds}\n{theirs}")
+    found = {}
+    for library, postures in {"fpbm_cpp": ours["q"], name: q}.items():
+        away = distance_from(line, [arm.forward(each)[:3, 3] for each in postures])
+        limits = [ours[bound] for bound in ("velocity", "acceleration", "jerk")]
+        ratios = [np.max(np.abs(np.diff(postures, k, axis=0)) / 1e-3**k / bound) for k, bound in enumerate(limits, 1)]
+        found[library] = (1e-3 * (len(postures) - 1), away, *ratios)
+        print(f"\n{library}: {found[library][0]:.3f} s, {away:.0e} m from the path, ratios to the bounds", end="")
+        print("".join(f" {ratio:.3f}" for ratio in ratios), end="")
+        assert errors(postures[-1], arm.forward(ours["q"][-1]))[0] < 1e-4
+        assert max(ratios[:2]) < 1.01
+    duration, away, *ratios = found["fpbm_cpp"]
+    assert away < 1e-6
+    assert max(ratios) < 1 + 1e-9
+    if name == "TOPP-RA":
+        assert duration == pytest.approx(found[name][0], rel=0.02)
