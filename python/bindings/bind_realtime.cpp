@@ -1,11 +1,16 @@
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "arrays.hpp"
+#include "motion.hpp"
 #include "read.hpp"
 #include "scheme.hpp"
 #include "sources.hpp"
@@ -58,7 +63,7 @@ PyTick python_tick(const StackLoop& loop, const StackLoop::Result& tick, const s
 /// The result of take() for a tracker in a posture, with the nearest pair in the posture.
 template <typename Tracker, typename Take>
 PyTick tick_at(Tracker& tracker, const JointVector& q, Take&& take) {
-  const std::optional<PyNearest> nearest = nearest_at(tracker.clearance(), q);
+  const std::optional<PyNearest> nearest = nearest_at(tracker.bounds().clearance(), q);
   return python_tick(take(), nearest);
 }
 
@@ -88,13 +93,12 @@ class PyTracker {
   PyTracker(const Model& model, const Scheme& scheme, const ArrayLike& q0, const OptionalArray& qd0,
             const OptionalArray& qdd0, const std::string& task, const py::object& stack, const py::object& limits,
             const TrackerOptions<>& options, const py::object& given)
-      : dof_(model.dof()), dt_(options.dt) {
+      : dof_(model.dof()), dt_(options.dt), scheme_(scheme), limits_(limits_of(model, limits)) {
     State<kDynamic> start{joint_vector(q0, "q0", dof_), JointVector::Zero(dof_)};
     if (qd0) start.qd = joint_vector(*qd0, "qd0", dof_);
     const JointVector before = qdd0 ? joint_vector(*qdd0, "qdd0", dof_) : JointVector::Zero(dof_);
-    const JointLimits<kDynamic> bounds = limits_of(model, limits);
     const AnyBounds further = bounds_of(model, given);
-    const TrackerStart from{start, options, bounds, before, further};
+    const TrackerStart from{start, options, limits_, before, further};
     if (!stack.is_none()) {
       any_ = std::make_unique<StackLoop>(read_stack(stack, model), scheme, from);
       return;
@@ -124,14 +128,14 @@ class PyTracker {
 
   [[nodiscard]] PyTick tick(const PyReferences& references) {
     StackLoop& loop = stack();
-    const std::optional<PyNearest> nearest = nearest_at(loop.tracker().clearance(), loop.tracker().state().q);
+    const std::optional<PyNearest> nearest = nearest_at(loop.tracker().bounds().clearance(), loop.tracker().state().q);
     return python_tick(loop, loop.tick(references), nearest);
   }
 
   [[nodiscard]] PyTick resolve_measured(const ArrayLike& q, const ArrayLike& qd, const PyReferences& references) {
     StackLoop& loop = stack();
     const State<kDynamic> measured{joint_vector(q, "q", dof_), joint_vector(qd, "qd", dof_)};
-    const std::optional<PyNearest> nearest = nearest_at(loop.tracker().clearance(), measured.q);
+    const std::optional<PyNearest> nearest = nearest_at(loop.tracker().bounds().clearance(), measured.q);
     return python_tick(loop, loop.resolve_measured(measured, references), nearest);
   }
 
@@ -147,8 +151,13 @@ class PyTracker {
   }
 
   [[nodiscard]] PyTick tick(PyFollower& follower) {
+    if (std::holds_alternative<Stacked>(any_)) {
+      PyReferences references;
+      for (const auto& [name, each] : follower.each) references[py::str(name)] = py::cast(&follower);
+      return tick(references);
+    }
     return visit(kByName, [&](auto& tracker, auto space) {
-      auto* same = std::get_if<AnyFollower<decltype(space)>>(&follower.any);
+      auto* same = std::get_if<AnyFollower<decltype(space)>>(&follower.of(""));
       if (same == nullptr) validation::reject("follower", ": is for another task: call this tracker's follow()");
       return tick_at(tracker, tracker.state().q, [&] { return tracker.tick(*same); });
     });
@@ -174,20 +183,56 @@ class PyTracker {
     });
   }
 
-  [[nodiscard]] PyFollower follow(const Given<Path>& given, double ramp, const std::optional<std::string>& task) {
-    const Path& path = given.as("path", "a path");
-    if (const auto* stacked = std::get_if<Stacked>(&any_)) return (*stacked)->follow(path, ramp, task);
+  [[nodiscard]] PyFollower follow(const Given<Path>& given, double ramp, const std::optional<std::string>& task,
+                                  bool keep_path, double reserve) {
+    (void)given.as("path", "a path");
+    const auto [object, speed, shortest] = kept_of(given, keep_path);
+    const Path& path = py::cast<const Path&>(object);
+    const FollowOptions options = follow_options(ramp, keep_path, reserve, speed, shortest);
+    if (const auto* stacked = std::get_if<Stacked>(&any_)) {
+      return (*stacked)->follow({{(*stacked)->plan().follower(task).name, &path}}, options);
+    }
     if (task) validation::reject("task", " = '" + *task + "': must not be given for a tracker with one task");
     return visit("", [&](auto& tracker, auto space) -> PyFollower {
       using Space = decltype(space);
-      return {AnyFollower<Space>(path.as<Space>(), tracker.tip(), ramp)};
+      AnyPath<Space> any = path.as<Space>();
+      double slow = ramp;
+      if (keep_path) {
+        const Motion<Space> motion{&tracker.arm(), any, scheme_, tracker.state(), TimeGrid<double>(dt_, dt_), nullptr};
+        const auto [clock, least] =
+            motion.kept_clock(limits_, tracker.bounds(), any.duration(), options.shortest, options.fastest);
+        any = AnyPath<Space>(TimedPath(any, clock, least));
+        slow = std::max(ramp, least);
+      }
+      return {{{"", AnyFollower<Space>(any, tracker.tip(), slow, keep_path)}}};
     });
+  }
+
+  /// Paths of several tasks of a stack, with one clock.
+  [[nodiscard]] PyFollower follow_all(const py::typing::Dict<py::str, py::object>& given, double ramp, bool keep_path,
+                                      double reserve) {
+    StackLoop& loop = stack();
+    std::vector<py::object> objects;
+    std::vector<std::pair<std::string, const Path*>> paths;
+    if (given.empty()) validation::reject("path", " = {}: must have a path for at least one task");
+    double tip_speed = 0.0;
+    double shortest = 0.0;
+    for (const auto& [name, each] : given) {
+      if (!py::isinstance<Path>(each)) validation::reject("path", ": must be a dictionary of paths by task name");
+      const auto [object, speed, duration] = kept_of(each, keep_path);
+      if (paths.empty()) tip_speed = speed;
+      if (!paths.empty() && std::isfinite(speed)) validation::reject("path", ": only the first path may have a speed");
+      shortest = std::max(shortest, duration);
+      objects.push_back(object);
+      paths.emplace_back(py::cast<std::string>(name), &py::cast<const Path&>(object));
+    }
+    return loop.follow(paths, follow_options(ramp, keep_path, reserve, tip_speed, shortest));
   }
 
   void move(const std::string& name, const Given<Shape>& given, const ArrayLike& velocity) {
     const Shape& shape = given.as("shape", "a HalfSpace, a Cuboid or a Capsule");
     const Vector<3> v = fixed_vector<3>(velocity, "velocity");
-    visit_any([&](auto& tracker) { move_obstacle(tracker.clearance(), name, shape, v); });
+    visit_any([&](auto& tracker) { move_obstacle(tracker.bounds().clearance(), name, shape, v); });
   }
 
   [[nodiscard]] py::object tip() {
@@ -197,6 +242,17 @@ class PyTracker {
 
  private:
   static constexpr const char* kByName = "must be given a dictionary of references by task name";
+
+  /// The path itself, or Path._kept() of Python: the geometry, the bound on the speed [m/s] and the least duration [s].
+  static std::tuple<py::object, double, double> kept_of(const py::handle& path, bool keep) {
+    if (keep) return py::cast<std::tuple<py::object, double, double>>(path.attr("_kept")());
+    return {py::reinterpret_borrow<py::object>(path), 0.0, 0.0};
+  }
+  [[nodiscard]] FollowOptions follow_options(double ramp, bool keep_path, double reserve, double tip_speed,
+                                             double shortest) const {
+    const FastestOptions fastest{dt_, tip_speed, FastestOptions().tip_acceleration, reserve};
+    return {ramp, keep_path, fastest, shortest, scheme_, limits_};
+  }
 
   /// Throws std::invalid_argument if the tracker has one task.
   [[nodiscard]] StackLoop& stack() const {
@@ -215,6 +271,8 @@ class PyTracker {
 
   int dof_;
   double dt_;
+  Scheme scheme_;
+  JointLimits<kDynamic> limits_;
   Any any_;
 };
 
@@ -239,26 +297,35 @@ void bind_tick(py::module_& m) {
 }
 
 void bind_follower(py::module_& m) {
-  const auto visit = [](auto visitor) { return [visitor](PyFollower& self) { return std::visit(visitor, self.any); }; };
+  const auto all = [](auto visitor) {
+    return [visitor](PyFollower& self) {
+      for (auto& [name, any] : self.each) std::visit(visitor, any);
+    };
+  };
+  const auto of = [](auto visitor) {
+    return [visitor](const PyFollower& self) { return std::visit(visitor, self.each.front().second); };
+  };
   py::class_<PyFollower>(m, "PathFollower",
                          "A path from the tip, with a clock that can pause, resume and run slower; the result of "
                          "Tracker.follow.")
-      .def("pause", visit([](auto& follower) { follower.pause(); }), "Stops on the path within the ramp time.")
-      .def("resume", visit([](auto& follower) { follower.resume(); }), "Continues along the path.")
+      .def("pause", all([](auto& follower) { follower.pause(); }), "Stops on the path within the ramp time.")
+      .def("resume", all([](auto& follower) { follower.resume(); }), "Continues along the path.")
       .def(
           "set_speed",
           [](PyFollower& self, double fraction) {
-            if (!std::visit([&](auto& follower) { return follower.set_speed(fraction); }, self.any)) {
-              validation::fail("fraction", fraction, "in (0, 1]");
+            for (auto& [name, any] : self.each) {
+              if (!std::visit([&](auto& follower) { return follower.set_speed(fraction); }, any)) {
+                validation::fail("fraction", fraction, "in (0, 1]");
+              }
             }
           },
           py::arg("fraction"),
           "Changes the speed to a fraction in (0, 1] of the path's speed, within the ramp time; during a pause, after "
           "resume().")
-      .def_property_readonly("speed", visit([](auto& follower) { return follower.speed(); }),
+      .def_property_readonly("speed", of([](const auto& follower) { return follower.speed(); }),
                              "Fraction of the path's speed that set_speed has set.")
-      .def_property_readonly("time", visit([](auto& follower) { return follower.time(); }), "Path time [s].")
-      .def_property_readonly("done", visit([](auto& follower) { return follower.done(); }),
+      .def_property_readonly("time", of([](const auto& follower) { return follower.time(); }), "Path time [s].")
+      .def_property_readonly("done", of([](const auto& follower) { return follower.done(); }),
                              "Whether path time is at the path's end.");
 }
 
@@ -385,10 +452,33 @@ if there is no motion, the arm brakes, and the status of the tick is the cause.)
            R"(The tick for a measured state: its qdd [rad/s^2] is the acceleration for a torque controller.
 
 The state may be up to measured_delay ticks old.)")
+      .def("follow", &PyTracker::follow_all, py::arg("paths"), py::kw_only(), py::arg("ramp") = 0.5,
+           py::arg("keep_path") = false, py::arg("reserve") = 0.05,
+           R"(Paths of several tasks of a stack, by task name, with one clock; options as for one path.)")
       .def("follow", &PyTracker::follow, py::arg("path"), py::kw_only(), py::arg("ramp") = 0.5, py::arg("task") = none,
-           R"(A path from the present tip; ramp is the duration of a pause or a resumption [s].
+           py::arg("keep_path") = false, py::arg("reserve") = 0.05,
+           R"(A path from the present tip, for tick.
 
-For a stack, a path from the task of that name; the name is optional if only one task is a position or a pose.)")
+For a stack, a path from the task of that name; the name is optional if only one task is a position or a pose.
+
+Parameters
+----------
+path : Path
+    The path. With keep_path, its duration is the least duration of the motion.
+ramp : float
+    Duration of a pause or a resumption [s].
+task : str, optional
+    Task of a stack.
+keep_path : bool
+    Whether the tip stays on the path if the path is faster than the limits allow (docs: Paths in the least time). The
+    clock of fastest(), slowed by the reserve, replaces the time law. What this plan does not know (obstacles, other
+    targets, disturbances) slows the clock further. The ramp is extended until no change of the speed exceeds a bound.
+    With keep_first_level, stop stops the arm on the path. Needs a scheme at velocity level, and an arm at rest; takes
+    some 50 ms.
+reserve : float
+    Fraction by which the motion lasts longer than the least time.
+
+Raises ParameterError if the arm cannot follow the path within its limits and bounds.)")
       .def("enable", &PyTracker::enable, py::arg("level"), py::arg("on"),
            R"(Enables or disables a level of a stack below the first; levels are counted from 0.
 

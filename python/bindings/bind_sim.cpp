@@ -58,19 +58,9 @@ std::optional<LimitOptions> limit_options_of(const py::object& given, const Mode
 std::optional<StackOptions> stack_options_of(const py::object& given, const Model& model, const Path& path) {
   if (given.is_none()) return std::nullopt;
   StackOptions options{read_stack(given.attr("stack"), model), {}, 0.0};
-  const auto lead = [&](const std::string& name, const Path& each) {
-    const StackTask& task = options.plan.follower(name);
-    const auto index = static_cast<std::size_t>(&task - options.plan.tasks.data());
-    if (task.kind == TaskKind::kPose) {
-      options.paths.push_back({index, each.as<Pose>()});
-    } else {
-      options.paths.push_back({index, each.as<Position<3>>()});
-    }
-    options.duration = std::max(options.duration, each.duration());
-  };
-  lead(py::cast<std::string>(given.attr("task")), path);
+  options.add(py::cast<std::string>(given.attr("task")), path);
   for (const auto& [name, each] : py::cast<py::dict>(given.attr("other_paths"))) {
-    lead(py::cast<std::string>(name), py::cast<const Path&>(each));
+    options.add(py::cast<std::string>(name), py::cast<const Path&>(each));
   }
   return options;
 }
@@ -83,7 +73,7 @@ class MotionOptions {
       : limits_(limit_options_of(limit_options, model)),
         stack_(stack_options_of(stack_tasks, model, path)),
         duration_(stack_ ? stack_->duration : path.duration()),
-        grid_(keeps_path() ? std::ceil(duration_ / dt) * dt : duration_, dt, hold) {}
+        grid_(keeps_path() ? dt : duration_, dt, hold) {}
 
   /// Null without limits.
   [[nodiscard]] const LimitOptions* limits() const noexcept { return limits_ ? &*limits_ : nullptr; }
@@ -133,46 +123,14 @@ struct MotionArrays {
   Output<Space> output;  ///< Pointers to the numbers of the arrays.
 };
 
-/// The joint positions of a motion without limits along a path of a duration [s].
-template <typename Space>
-JointPath<kDynamic> joint_path_of(Motion<Space> motion, double duration) {
-  return joint_path<kDynamic>(duration, [&](int intervals, std::vector<JointVector>& rows) {
-    motion.grid = TimeGrid<double>(duration, duration / intervals);
-    RowMajor q(motion.grid.samples(), motion.start.q.size());
-    Output<Space> output;
-    output.buffers.q = q.data();
-    const auto result = motion.simulate(output);
-    for (Eigen::Index i = 0; i < result.samples; ++i) rows.emplace_back(q.row(i).transpose());
-    return result;
-  });
-}
-
-/// The clock of a path that the motion keeps within its limits: at least as long as the path, with the reserve.
-template <typename Space>
-std::shared_ptr<const FastestClock> kept_clock(const Motion<Space>& motion, double duration,
-                                               const LimitOptions& limit_options) {
-  if (motion.scheme.level != Level::kVelocity) {
-    validation::reject("keep_path", " needs a scheme at velocity level, for example MVN() or WMVN(weights)");
-  }
-  if (motion.start.qd.cwiseAbs().maxCoeff() > 0.0) validation::reject("qd0", ": must be zero with keep_path");
-  const JointPath<kDynamic> along = joint_path_of(motion, duration);
-  if (!along.joints) {
-    validation::reject("path", ": can be followed to the fraction ", along.result.time / duration,
-                       " only: ", message(along.result.status), ". ", advice(along.result.status));
-  }
-  AnyBounds bounds = limit_options.bounds;
-  const double dt = motion.grid.dt();
-  auto clock = motion.clock(*along.joints, limit_options.limits, bounds, {dt, {}});
-  const double least = std::max(duration, (1.0 + limit_options.reserve) * clock.duration());
-  clock.stretch(std::max(clock.duration(), std::ceil(least / dt - 1e-9) * dt));
-  return std::make_shared<const FastestClock>(clock);
-}
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 /// A whole motion, run without the interpreter's lock. With limit options, the motion keeps the limits. With stack
-/// tasks, the motion has several tasks.
+/// tasks, the motion has several tasks. kept: bound on the speed of the tip [m/s] and least duration [s] of a motion
+/// that keeps its path.
 Outcomes rollout(const Model& arm, const Path& path, const Scheme& scheme, const ArrayLike& q0, const ArrayLike& qd0,
                  double dt, double hold, const std::string& task, const py::object& limit_options,
-                 const py::object& stack_tasks) {
+                 const py::object& stack_tasks, const std::pair<double, double>& kept) {
   const State<kDynamic> start{joint_vector(q0, "q0", arm.dof()), joint_vector(qd0, "qd0", arm.dof())};
   const MotionOptions options(arm, path, dt, hold, limit_options, stack_tasks);
   return visit_space(arm, task, options.stack() != nullptr, [&](const auto* any, auto space) -> Outcomes {
@@ -182,14 +140,15 @@ Outcomes rollout(const Model& arm, const Path& path, const Scheme& scheme, const
     if (options.stack() != nullptr) stack = *options.stack();
     Motion<Space> motion{any, same, scheme, start, options.grid(), stack ? &*stack : nullptr};
     if (options.keeps_path()) {
-      const auto clock = kept_clock(motion, options.duration(), *options.limits());
-      same = AnyPath<Space>(TimedPath(same, clock));
+      const LimitOptions& limits = *options.limits();
+      const auto [tip_speed, shortest] = kept;
+      const FastestOptions fastest{dt, tip_speed, kUnbounded, limits.reserve};
+      const auto [clock, ramp] = motion.kept_clock(limits.limits, limits.bounds, options.duration(), shortest, fastest);
+      same = AnyPath<Space>(TimedPath(same, clock, ramp));
       motion.grid = TimeGrid<double>(clock->duration(), motion.grid.dt(), hold);
       if (stack) {
         stack->duration = clock->duration();
-        for (TaskPath& each : stack->paths) {
-          std::visit([&](auto& own) { own = std::decay_t<decltype(own)>(TimedPath(own, clock)); }, each.path);
-        }
+        for (TaskPath& each : stack->paths) each.keep(clock, ramp);
       }
     }
     const MotionArrays<Space> arrays(motion.grid.samples(), arm.dof(), options.limits(), motion.stack);
@@ -219,7 +178,7 @@ Outcomes fastest(const Model& arm, const Path& path, const Scheme& scheme, const
     using Space = decltype(space);
     const AnyPath<Space> same = path.as<Space>();
     Motion<Space> motion{any, same, scheme, start, TimeGrid<double>(duration, duration), stack ? &*stack : nullptr};
-    const JointPath<kDynamic> along = joint_path_of(motion, duration);
+    const JointPath<kDynamic> along = motion.joint_path(duration);
     if (!along.joints) {
       Arrays last;
       last["q"] = array_of(along.result.last.q);
@@ -232,7 +191,8 @@ Outcomes fastest(const Model& arm, const Path& path, const Scheme& scheme, const
         validation::reject("path", " at the fraction ", p / duration, ": ", error.what());
       }
     }
-    const auto clock = motion.clock(*along.joints, limits_of(arm, limits), kept, {dt, {tip_speed, tip_acceleration}});
+    const auto clock =
+        motion.clock(*along.joints, limits_of(arm, limits), kept, {dt, tip_speed, tip_acceleration, 0.0});
     motion.grid = TimeGrid<double>(clock.duration(), dt);
     const MotionArrays<Space> arrays(motion.grid.samples(), arm.dof(), nullptr, motion.stack);
     motion.play(*along.joints, clock, arrays.output);
@@ -355,8 +315,8 @@ void bind_sim(py::module_& m) {
           "set", [](Stop& stop) { stop.flag.store(true, std::memory_order_relaxed); }, "Callable from any thread.");
   const auto none = py::none();
   m.def("rollout", &rollout, py::arg("arm"), py::arg("path"), py::arg("scheme"), py::arg("q0"), py::arg("qd0"),
-        py::arg("dt"), py::arg("hold"), py::arg("task"), py::arg("limit_options") = none,
-        py::arg("stack_tasks") = none);
+        py::arg("dt"), py::arg("hold"), py::arg("task"), py::arg("limit_options") = none, py::arg("stack_tasks") = none,
+        py::arg("kept") = std::pair(kUnbounded, 0.0));
   m.def("fastest", &fastest, py::arg("arm"), py::arg("path"), py::arg("scheme"), py::arg("q0"), py::arg("dt"),
         py::arg("task"), py::arg("limits"), py::arg("tip_speed"), py::arg("tip_acceleration"), py::arg("bounds"),
         py::arg("stack_tasks") = none);

@@ -1,5 +1,8 @@
 #include "motion.hpp"
 
+#include <memory>
+#include <vector>
+
 namespace fpbm::bindings {
 
 template <typename Space>
@@ -16,6 +19,38 @@ template <typename Space>
 FastestClock Motion<Space>::clock(const Spline<kDynamic>& joints, const JointLimits<kDynamic>& limits,
                                   AnyBounds& bounds, const FastestOptions& options) const {
   return fastest_clock(joints, path, limits, bounds, options);
+}
+
+template <typename Space>
+JointPath<kDynamic> Motion<Space>::joint_path(double duration) const {
+  return fpbm::joint_path<kDynamic>(duration, [&](int intervals, std::vector<JointVector>& rows) {
+    Motion nodes = *this;
+    nodes.grid = TimeGrid<double>(duration, duration / intervals);
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> q(nodes.grid.samples(), start.q.size());
+    Output<Space> output;
+    output.buffers.q = q.data();
+    const auto result = nodes.simulate(output);
+    for (Eigen::Index i = 0; i < result.samples; ++i) rows.emplace_back(q.row(i).transpose());
+    return result;
+  });
+}
+
+template <typename Space>
+KeptClock Motion<Space>::kept_clock(const JointLimits<kDynamic>& limits, AnyBounds bounds, double duration,
+                                    double shortest, const FastestOptions& options) const {
+  if (scheme.level != Level::kVelocity) {
+    validation::reject("keep_path", " needs a scheme at velocity level, for example MVN() or WMVN(weights)");
+  }
+  constexpr double kAtRest = 1e-6;  // [rad/s]: decaying motions of a tracker that has stopped.
+  if (start.qd.cwiseAbs().maxCoeff() > kAtRest) {
+    validation::reject("qd0", ": must be zero with keep_path: stop the arm first");
+  }
+  const JointPath<kDynamic> along = joint_path(duration);
+  require_followed(along, duration);
+  FastestClock found = clock(*along.joints, limits, bounds, options);
+  stretch_to(found, shortest, options.dt);
+  const double ramp = least_ramp(*along.joints, found, limits, options.dt);
+  return {std::make_shared<const FastestClock>(found), ramp};
 }
 
 template struct Motion<Position<2>>;

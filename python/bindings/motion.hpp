@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <memory>
 
 #include "bounds.hpp"
 #include "fpbm/any/detail/any_path.hpp"
@@ -70,6 +71,12 @@ struct LimitOptions {
   double reserve = 0.0;      ///< Of the duration to the least duration, with keeps_path.
 };
 
+/// The clock of a path that a follower keeps, and its least ramp [s].
+struct KeptClock {
+  std::shared_ptr<const FastestClock> clock;
+  double ramp;
+};
+
 /// One motion along a path.
 template <typename Space>
 struct Motion {
@@ -86,6 +93,14 @@ struct Motion {
   /// fpbm::track() of the motion. Throws std::invalid_argument if scheme, start, limits, options or bounds do not
   /// fit.
   RolloutResult<kDynamic> track(const LimitOptions& limit_options, const Output<Space>& output) const;
+
+  /// joint_path() of the motion, whose path has a duration [s].
+  [[nodiscard]] JointPath<kDynamic> joint_path(double duration) const;
+  /// The clock of kept_path() for the motion, whose path has a duration [s]. shortest: least duration of the motion
+  /// [s]. Throws std::invalid_argument as kept_path() does, and unless the scheme is at velocity level and the motion
+  /// starts at rest.
+  [[nodiscard]] KeptClock kept_clock(const JointLimits<kDynamic>& limits, AnyBounds bounds, double duration,
+                                     double shortest, const FastestOptions& options) const;
 
   /// fastest_clock() and play() of the motion, for joint positions along the path.
   FastestClock clock(const Spline<kDynamic>& joints, const JointLimits<kDynamic>& limits, AnyBounds& bounds,

@@ -8,9 +8,18 @@
 #include <utility>
 #include <vector>
 
+#include "motion.hpp"
 #include "read.hpp"
 
 namespace fpbm::bindings {
+
+PyFollower::Any& PyFollower::of(const std::string& task) {
+  if (each.size() == 1) return each.front().second;
+  for (auto& [name, follower] : each) {
+    if (name == task) return follower;
+  }
+  validation::reject("follower", ": follows no path of the task '" + task + "'");
+}
 
 StackLoop::StackLoop(const StackPlan& plan, const Scheme& scheme, const TrackerStart& from)
     : dt_(from.options.dt),
@@ -32,7 +41,7 @@ std::optional<StackReferences::Source> StackLoop::source_of(const StackTask& tas
     validation::reject(argument,
                        ": is for another task than '" + task.name + "': must be for the same kind, position or pose");
   };
-  if (py::isinstance<PyFollower>(given)) return same(py::cast<PyFollower&>(given).any, "follower");
+  if (py::isinstance<PyFollower>(given)) return same(py::cast<PyFollower&>(given).of(task.name), "follower");
   if (py::isinstance<PyTargetFilter>(given)) {
     auto& any = py::cast<PyTargetFilter&>(given).any;
     const Source source = same(any, "filter");
@@ -70,11 +79,34 @@ StackLoop::Result StackLoop::resolve_measured(const State<kDynamic>& measured, c
   return tracker_->resolve_measured(measured, references_.take(0.0));
 }
 
-PyFollower StackLoop::follow(const Path& path, double ramp, const std::optional<std::string>& name) const {
-  const StackTask& task = plan().follower(name);
-  const Transform<> at = task.frame_of(tracker().tip());
-  if (task.kind == TaskKind::kPose) return {AnyFollower<Pose>(path.as<Pose>(), at, ramp)};
-  return {AnyFollower<Position<3>>(path.as<Position<3>>(), at.p, ramp)};
+PyFollower StackLoop::follow(const std::vector<std::pair<std::string, const Path*>>& paths,
+                             const FollowOptions& options) const {
+  StackOptions stack{references_.plan_now(), {}, 0.0};
+  for (const auto& [name, path] : paths) stack.add(name, *path);
+  double ramp = options.ramp;
+  if (options.keep_path) {
+    const auto keep = [&](const auto& first) {
+      using Space = typename std::decay_t<decltype(first)>::Space;
+      const State<kDynamic>& start = tracker().state();
+      const Motion<Space> motion{nullptr, first, options.scheme, start, TimeGrid<double>(dt_, dt_), &stack};
+      return motion.kept_clock(options.limits, tracker().bounds(), stack.duration, options.shortest, options.fastest);
+    };
+    const auto [clock, least] = std::visit(keep, stack.paths.front().path);
+    ramp = std::max(ramp, least);
+    for (TaskPath& each : stack.paths) each.keep(clock, ramp);
+  }
+  PyFollower result;
+  for (const auto& [index, any] : stack.paths) {
+    const StackTask& task = plan().tasks[index];
+    const Transform<> at = task.frame_of(tracker().tip());
+    const auto follow = [&](const auto& path) -> PyFollower::Any {
+      using Space = typename std::decay_t<decltype(path)>::Space;
+      if constexpr (std::is_same_v<Space, Pose>) return AnyFollower<Space>(path, at, ramp, options.keep_path);
+      if constexpr (!std::is_same_v<Space, Pose>) return AnyFollower<Space>(path, at.p, ramp, options.keep_path);
+    };
+    result.each.emplace_back(task.name, std::visit(follow, any));
+  }
+  return result;
 }
 
 void StackLoop::enable(int level, bool on) {

@@ -11,6 +11,7 @@
 
 #include "arrays.hpp"
 #include "bounds.hpp"
+#include "fpbm/simulate/fastest.hpp"
 #include "sources.hpp"
 #include "stack_references.hpp"
 
@@ -20,8 +21,23 @@ namespace fpbm::bindings {
 using PyReferences = py::typing::Dict<py::str, py::object>;
 using PyPoints = py::typing::Dict<py::str, Array>;
 
+/// The followers of one path, or of the paths of a stack with one clock.
 struct PyFollower {
-  std::variant<AnyFollower<Position<2>>, AnyFollower<PlanarPose>, AnyFollower<Position<3>>, AnyFollower<Pose>> any;
+  using Any =
+      std::variant<AnyFollower<Position<2>>, AnyFollower<PlanarPose>, AnyFollower<Position<3>>, AnyFollower<Pose>>;
+  std::vector<std::pair<std::string, Any>> each;  ///< With the names of the tasks, which are empty for a single task.
+
+  /// The follower of a task, or the only follower. Throws std::invalid_argument if there is none.
+  [[nodiscard]] Any& of(const std::string& task);
+};
+/// The arguments of a follower, apart from its paths. The scheme and the limits are the tracker's.
+struct FollowOptions {
+  double ramp;
+  bool keep_path;
+  FastestOptions fastest;  ///< With keep_path, as shortest.
+  double shortest;         ///< Least duration [s].
+  const Scheme& scheme;
+  const JointLimits<kDynamic>& limits;
 };
 
 /// A tracker of a stack in Python: references and results by the names of the tasks.
@@ -40,14 +56,16 @@ class StackLoop {
   [[nodiscard]] Result tick(const PyReferences& references);
   [[nodiscard]] Result resolve_measured(const State<kDynamic>& measured, const PyReferences& references);
 
-  /// A path from the present point of a task. task: name of the task; none if only one task can follow a path.
-  [[nodiscard]] PyFollower follow(const Path& path, double ramp, const std::optional<std::string>& task) const;
+  /// Paths from the present points of tasks, by the names of the tasks.
+  [[nodiscard]] PyFollower follow(const std::vector<std::pair<std::string, const Path*>>& paths,
+                                  const FollowOptions& options) const;
 
   /// Throws std::invalid_argument unless the level exists and is below the first.
   void enable(int level, bool on);
   /// The new level k is the old level order[k]. Throws std::invalid_argument unless order has each level once, and its
   /// first level is enabled.
   void reorder(const std::vector<int>& order);
+  [[nodiscard]] const StackPlan& plan() const noexcept { return references_.plan(); }
   [[nodiscard]] Any& tracker() const noexcept { return *tracker_; }
   /// The present point of each task, by name, in the shape of references.
   [[nodiscard]] PyPoints points() const;
@@ -61,7 +79,6 @@ class StackLoop {
   [[nodiscard]] const std::shared_ptr<const Parts>& parts() const noexcept { return parts_; }
 
  private:
-  [[nodiscard]] const StackPlan& plan() const noexcept { return references_.plan(); }
   /// Sets the references of a tick.
   void read(const PyReferences& references);
   [[nodiscard]] std::optional<StackReferences::Source> source_of(const StackTask& task, const py::handle& given) const;

@@ -1,14 +1,19 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <memory>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "fpbm/any/detail/any_path.hpp"
+#include "fpbm/path/detail/timed_path.hpp"
 #include "fpbm/simulate/rollout.hpp"
 #include "scheme.hpp"
+#include "sources.hpp"
 #include "stack_tasks.hpp"
 
 namespace fpbm::bindings {
@@ -17,6 +22,11 @@ namespace fpbm::bindings {
 struct TaskPath {
   std::size_t task;  ///< Index among the plan's tasks.
   std::variant<AnyPath<Position<3>>, AnyPath<Pose>> path;
+
+  /// Replaces the clock of the path.
+  void keep(const std::shared_ptr<const FastestClock>& clock, double ramp) {
+    std::visit([&](auto& own) { own = std::decay_t<decltype(own)>(TimedPath(own, clock, ramp)); }, path);
+  }
 };
 
 /// Several tasks, some of which follow paths.
@@ -24,6 +34,18 @@ struct StackOptions {
   StackPlan plan;
   std::vector<TaskPath> paths;  ///< Samples have tip, reference and error of the first path.
   double duration;              ///< Duration of the longest path [s].
+
+  /// Adds a path of the task of a name. Throws std::invalid_argument if the task cannot follow the path.
+  void add(const std::string& name, const Path& path) {
+    const StackTask& task = plan.follower(name);
+    const auto index = static_cast<std::size_t>(&task - plan.tasks.data());
+    if (task.kind == TaskKind::kPose) {
+      paths.push_back({index, path.as<Pose>()});
+    } else {
+      paths.push_back({index, path.as<Position<3>>()});
+    }
+    duration = std::max(duration, path.duration());
+  }
 };
 
 /// A reference in space as a reference of a task; a position has no orientation.

@@ -33,17 +33,26 @@ class StackReferences {
   /// The references of the sources after `seconds` become the targets. Returns all targets.
   const Reference<Space>& take(double seconds) noexcept;
   /// After a tick of dt [s].
-  friend void advance_source(StackReferences& references, double dt, bool stopping) noexcept {
-    references.advance(dt, stopping);
+  friend void advance_source(StackReferences& references, double dt, bool stopping, double fraction) noexcept {
+    references.advance(dt, stopping, fraction);
+  }
+  friend Reference<Space> joined(Space, double seconds, const StackReferences& references) noexcept {
+    return references.ahead(seconds);
+  }
+  friend double most_path_fraction(StackReferences& references, double dt, bool stopping) noexcept {
+    return references.most_fraction(dt, stopping);
   }
 
   /// The new level k is the old level order[k], with its targets. tip: points of the tasks in the new order.
   void reorder(const std::array<int, AnyStack::kLevels>& order, const AnyStack::Point& tip) noexcept;
 
   [[nodiscard]] const StackPlan& plan() const noexcept { return plan_; }
+  /// The plan with the present targets of all tasks.
+  [[nodiscard]] StackPlan plan_now() const;
 
  private:
-  void advance(double dt, bool stopping) noexcept;
+  void advance(double dt, bool stopping, double fraction) noexcept;
+  [[nodiscard]] double most_fraction(double dt, bool stopping) noexcept;
   [[nodiscard]] StackTarget target_of(const StackTask& task) const noexcept;
 
   StackPlan plan_;

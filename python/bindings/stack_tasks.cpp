@@ -82,11 +82,25 @@ const Reference<StackReferences::Space>& StackReferences::take(double seconds) n
   return held_;
 }
 
-void StackReferences::advance(double dt, bool stopping) noexcept {
-  take(dt);
+void StackReferences::advance(double dt, bool stopping, double fraction) noexcept {
   for (const auto& [task, source] : sources_) {
-    std::visit([&](auto* each) { advance_source(*each, dt, stopping); }, source);
+    std::visit([&](auto* each) { advance_source(*each, dt, stopping, fraction); }, source);
   }
+  take(0.0);
+}
+
+double StackReferences::most_fraction(double dt, bool stopping) noexcept {
+  double most = 0.0;
+  for (const auto& [task, source] : sources_) {
+    most = std::max(most, std::visit([&](auto* each) { return most_path_fraction(*each, dt, stopping); }, source));
+  }
+  return most;
+}
+
+StackPlan StackReferences::plan_now() const {
+  StackPlan now = plan_;
+  for (std::size_t i = 0; i < now.tasks.size(); ++i) now.targets[i] = target_of(now.tasks[i]);
+  return now;
 }
 
 StackTarget StackReferences::target_of(const StackTask& task) const noexcept {

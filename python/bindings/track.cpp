@@ -49,10 +49,13 @@ Vector<Space::kRows> rows_of(const JointVector& error) noexcept {
   }
 }
 
+/// Ramp of the followers of a motion, which never pause [s].
+constexpr double kRamp = 0.5;
+
 /// The paths of a stack, each from the frame of its task.
 class Followers {
  public:
-  Followers(StackReferences& references, const std::vector<TaskPath>& paths, const AnyStack::Point& tip) {
+  Followers(StackReferences& references, const std::vector<TaskPath>& paths, const AnyStack::Point& tip, bool keep) {
     each_.reserve(paths.size());  // The sources point to the followers.
     StackReferences::Sources sources;
     for (const auto& [index, any] : paths) {
@@ -60,7 +63,7 @@ class Followers {
       std::visit(
           [&](const auto& path) {
             using Follower = PathFollower<std::decay_t<decltype(path)>>;
-            each_.emplace_back(Follower(path, point_of<typename Follower::Space>(task->frame_of(tip))));
+            each_.emplace_back(Follower(path, point_of<typename Follower::Space>(task->frame_of(tip)), kRamp, keep));
             sources.emplace_back(task, &std::get<Follower>(each_.back()));
           },
           any);
@@ -116,7 +119,7 @@ class TaskRecorder {
 template <typename Tracker, typename Follower, typename Space, typename Record>
 RolloutResult<kDynamic> track_clear(Tracker& tracker, Follower& follower, const Motion<Space>& motion,
                                     const Output<Space>& output, Record& record) {
-  const auto& clearance = tracker.clearance();
+  const auto& clearance = tracker.bounds().clearance();
   auto placed = clearance.placement();
   const auto with_clearance = [&](const auto& sample, const auto& tick) noexcept {
     if (output.clearance != nullptr) {
@@ -135,13 +138,13 @@ template <typename Space>
 RolloutResult<kDynamic> Motion<Space>::track(const LimitOptions& limit_options, const Output<Space>& output) const {
   if (stack == nullptr) {
     const auto tracker = tracker_of<Space>(*arm, *this, limit_options);
-    AnyFollower<Space> follower(path, tracker->tip());
+    AnyFollower<Space> follower(path, tracker->tip(), kRamp, limit_options.keeps_path);
     Recorder<Space> record(output, Level::kAcceleration);
     return track_clear(*tracker, follower, *this, output, record);
   }
   const auto tracker = tracker_of<AnyStack::Space>(stack->plan.arm_at(scheme.level), *this, limit_options);
   StackReferences references(stack->plan, tracker->tip());
-  const Followers followers(references, stack->paths, tracker->tip());
+  const Followers followers(references, stack->paths, tracker->tip(), limit_options.keeps_path);
   TaskRecorder<Space> record(*this, output, Level::kAcceleration);
   return track_clear(*tracker, references, *this, output, record);
 }

@@ -49,9 +49,8 @@ class AnyTracker {
   /// One tick with a source of references: a Reference, a path, a filter, or StackReferences.
   template <typename Source>
   Result tick(Source&& source) noexcept {
-    const auto ahead_of = [&](double seconds) noexcept { return source_ahead(source, seconds); };
-    const Result result = advance(TickReferences<Space>::of(ahead_of, dt_));
-    advance_source(source, dt_, stopping_);
+    const Result result = advance(references_of(Space{}, dt_, stopping_, source));
+    advance_source(source, dt_, stopping_, result.path_fraction);
     return result;
   }
   virtual Result advance(const TickReferences<Space>& references) noexcept = 0;
@@ -70,7 +69,7 @@ class AnyTracker {
   [[nodiscard]] virtual const JointVector& acceleration_change() const noexcept = 0;
   [[nodiscard]] virtual Point tip() const noexcept = 0;
   [[nodiscard]] virtual double sigma() const noexcept = 0;
-  [[nodiscard]] virtual Clearance<kDynamic>& clearance() noexcept = 0;
+  [[nodiscard]] virtual AnyBounds& bounds() noexcept = 0;
 
   // A tick whose step is made in lanes (LaneTracker).
   virtual bool begin(const Vector<Space::kRows>& error, double length) noexcept = 0;

@@ -56,7 +56,7 @@ class TrackerAt final : public AnyTracker<Space> {
   }
   [[nodiscard]] Point tip() const noexcept override { return tracker_.tip(); }
   [[nodiscard]] double sigma() const noexcept override { return tracker_.sigma(); }
-  [[nodiscard]] Clearance<kDynamic>& clearance() noexcept override { return tracker_.bounds().clearance(); }
+  [[nodiscard]] AnyBounds& bounds() noexcept override { return tracker_.bounds(); }
 
   bool begin(const Vector<Space::kRows>& error, double length) noexcept override {
     return tracker_.begin(error, length);

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import KW_ONLY, replace
 from functools import cached_property
-from math import pi
+from math import inf, pi
 from typing import Any, ClassVar
 
 import numpy as np
@@ -79,6 +79,22 @@ class Path(Data, CorePath):
     def then(self, path: Path) -> Path:
         """This path, followed by another path that starts at the end of this path."""
         return Sequence((self, path))
+
+    def _smooth(self) -> Path:
+        """This path with time laws that begin and end with zero velocity and acceleration; the geometry is equal."""
+        return replace(self, time_law="quintic") if "time_law" in self._values() else self
+
+    def _speed(self) -> float:
+        """Bound on the speed of the tip [m/s]."""
+        return inf
+
+    def _kept(self) -> tuple[Path, float, float]:
+        """Arguments of a motion that keeps the path: geometry, bound on the speed [m/s], least duration [s].
+
+        A path at a speed has no least duration: the speed decides.
+        """
+        speed = self._speed()
+        return self._smooth(), speed, self.duration if speed == inf else 0.0
 
     def _finish(self) -> None:
         CorePath.__init__(self, COMPILERS[library_class(type(self)).kind](*self._values().values()))
@@ -219,6 +235,12 @@ class InPlane(Path):
         shape="(2, 3)",
     )
 
+    def _smooth(self) -> Path:
+        return replace(self, path=self.path._smooth())
+
+    def _speed(self) -> float:
+        return self.path._speed()
+
     def _finish(self) -> None:
         require("path", self.path, Path, "a path")
         axes = np.eye(3)[["xyz".index(axis) for axis in self.plane]] if isinstance(self.plane, str) else self.plane
@@ -239,6 +261,12 @@ class WithRotation(Path):
     _: KW_ONLY
     time_law: str = parameter("Time law of the rotation.", default="quintic", choices=TIME_LAWS)
 
+    def _smooth(self) -> Path:
+        return replace(self, path=self.path._smooth(), time_law="quintic")
+
+    def _speed(self) -> float:
+        return self.path._speed()
+
     def _finish(self) -> None:
         require("path", self.path, Path, "a path")
         super()._finish()
@@ -250,6 +278,12 @@ class Sequence(Path):
 
     kind = "sequence"
     paths: tuple[Path, ...] = parameter("Paths in their order, at least one.")
+
+    def _smooth(self) -> Path:
+        return replace(self, paths=tuple(path._smooth() for path in self.paths))
+
+    def _speed(self) -> float:
+        return min(path._speed() for path in self.paths)
 
     def _finish(self) -> None:
         require("paths", self.paths, (list, tuple), "a sequence of paths")
@@ -276,6 +310,12 @@ class AtSpeed(Path):
     _: KW_ONLY
     acceleration: float = parameter("Largest acceleration along the path.", POSITIVE, unit="m/s^2", usual=0.5)
     jerk: float | None = parameter("Largest jerk along the path.", POSITIVE, default=None, unit="m/s^3")
+
+    def _smooth(self) -> Path:
+        return self.path._smooth()
+
+    def _speed(self) -> float:
+        return self.speed
 
     def _finish(self) -> None:
         require("path", self.path, Path, "a path")

@@ -202,8 +202,8 @@ TEST(Fastest, keeps_bounds_on_the_tip_and_on_speeds) {
     }
     return std::array<double, 2>{speed, acceleration};
   };
-  options.tip.velocity = 0.4;
-  options.tip.acceleration = 2.0;
+  options.tip_speed = 0.4;
+  options.tip_acceleration = 2.0;
   const auto tip = largest(fastest_motion(panda(), circle(), bent(), limits, options));
   EXPECT_LE(tip[0], 0.4 + 1e-9);
   EXPECT_LE(tip[1], 2.0 + 1e-6);

@@ -21,8 +21,7 @@ from ..schemes import Scheme
 from ..tasks import Stack
 from .run import Run
 from .run_data import Paths
-from .simulation import make_run, require_motion, task_and_paths
-from .smooth import smooth_all
+from .simulation import kept_paths, make_run, require_motion, task_and_paths
 
 REMEDY = "Keep the path inside the workspace and away from singular postures, or choose another q0, scheme or weights."
 ON_BOUND = 0.99  # Ratio to a bound above which a joint counts as on the bound.
@@ -46,8 +45,8 @@ def fastest(
 
     The scheme gives the joint positions along the whole path. The clock of the path then minimises the duration within
     the bounds on velocity, acceleration and jerk of all joints, from rest to rest (docs: Paths in the least time). The
-    durations and time laws of shapes have no effect: only the geometry counts. Between the parts of a Sequence, the
-    arm stops. run.saturated and run.bound_ratios() show which bounds limit the motion.
+    durations and time laws of shapes have no effect: only the geometry counts, and the speed of a path at_speed(), as a
+    bound. Between the parts of a Sequence, the arm stops. run.saturated and run.bound_ratios() show which bounds limit the motion.
 
     Parameters
     ----------
@@ -73,7 +72,8 @@ def fastest(
         raise wrong(
             "scheme", scheme, f" = {scheme!r:.80}: must be at velocity level, for example MVN() or WMVN(weights)"
         )
-    name, kind, followed, tasks = task_and_paths(smooth_all(path), task, stack)
+    geometry, speed, _ = kept_paths(path, task)
+    name, kind, followed, tasks = task_and_paths(geometry, task, stack)
     options: dict[str, Any] = {
         "dt": float(dt),
         "limits": limits_of(arm, limits),
@@ -82,7 +82,7 @@ def fastest(
         "bounds": bounds_of(bounds),
         "stack": stack,
     }
-    tip = inf if tip_speed is None else tip_speed, inf if tip_acceleration is None else tip_acceleration
+    tip = speed if tip_speed is None else min(tip_speed, speed), inf if tip_acceleration is None else tip_acceleration
     outcome = fastest_motion(arm, followed, scheme, q0, dt, kind, options["limits"], *tip, options["bounds"], tasks)
     code, fraction, _, arrays = outcome
     if failed(code):

@@ -1,6 +1,7 @@
 """A whole motion: simulated without limits, or tracked within the joint limits."""
 
 from collections.abc import Callable, Mapping, Sequence
+from math import inf
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,7 +18,6 @@ from ..schemes import Scheme
 from ..tasks import PoseTask, Stack
 from .run import Run
 from .run_data import Paths, RunStatus
-from .smooth import smooth_all
 
 
 class LimitOptions(NamedTuple):
@@ -147,12 +147,13 @@ def track(
     keep_path, reserve
         Whether the tip stays on the path if the path is faster than the limits allow: the path then lasts (1 + reserve)
         times the duration of fastest(). Needs a scheme at velocity level, and a start at rest. The durations and time
-        laws of shapes have no effect, except that the motion is not shorter than the path. Nearly singular postures are
-        not damped: the bounds on the joints limit the motion there.
+        laws of shapes have no effect, except that the motion is not shorter than the path. The speed of a path at_speed()
+        is a bound. Nearly singular postures are not damped: the bounds on the joints limit the motion there.
     """
     require_motion(arm, path, scheme)
     options = motion_options(arm, dt, hold, qd0)
-    name, kind, followed, tasks = task_and_paths(smooth_all(path) if keep_path else path, task, stack)
+    followed_paths, *kept = kept_paths(path, task) if keep_path else (path, inf, 0.0)
+    name, kind, followed, tasks = task_and_paths(followed_paths, task, stack)
     limited = LimitOptions(
         limits_of(arm, limits),
         error_bound,
@@ -167,7 +168,7 @@ def track(
         bool(keep_path),
         reserve,
     )
-    outcome = rollout(arm, followed, scheme, q0, options["qd0"], dt, hold, kind, limited, tasks)
+    outcome = rollout(arm, followed, scheme, q0, options["qd0"], dt, hold, kind, limited, tasks, kept)
     options |= {**limited._asdict(), "stack": stack}
     return make_run(outcome, q0, arm, path, scheme, name, options, track)
 
@@ -178,6 +179,20 @@ def require_motion(arm: object, path: object, *schemes: object) -> None:
     require("path", path, (Path, Mapping), "a path, or a dictionary of paths by task name")
     for scheme in schemes:
         require("scheme", scheme, Scheme, "a scheme")
+
+
+def kept_paths(path: Paths, task: str | None) -> tuple[Paths, float, float]:
+    """Geometry of paths that a motion keeps, bound on the speed of the tip [m/s], and least duration [s]."""
+    if isinstance(path, Path):
+        return path._kept()
+    kept = {name: each._kept() for name, each in path.items()}
+    main = next(iter(kept), "") if task is None else task
+    for name, (_, speed, _) in kept.items():
+        if speed < inf and name != main:
+            raise wrong("path", path, f"[{name!r}]: has a speed; only the path of the run's task may have a speed")
+    speed = kept[main][1] if main in kept else inf
+    durations = (duration for _, _, duration in kept.values())
+    return {name: each for name, (each, _, _) in kept.items()}, speed, max(durations, default=0.0)
 
 
 def path_task(task: str | None, stack: Stack | None) -> tuple[str, str]:

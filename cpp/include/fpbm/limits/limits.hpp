@@ -49,7 +49,7 @@ class Limits {
       const JointBounds<Scalar> joint = usable_bounds<kLevel>(i, bounds_.joint(i), tick);
       bounds_.set(i, joint);
       const bool enveloped = std::isfinite(joint.deceleration);
-      const Scalar least = bounds_jerk(i) ? kOffset * joint.acceleration / joint.jerk : tick / Scalar(2);
+      const Scalar least = bounds_jerk(i) ? JointBounds<Scalar>::kOffset * joint.acceleration / joint.jerk : tick / Scalar(2);
       const Scalar delay = enveloped ? joint.velocity_offset / joint.deceleration : least;
       const Scalar deceleration = enveloped ? joint.deceleration : joint.acceleration;
       upper_.set(i, joint.upper, delay, deceleration);
@@ -187,10 +187,6 @@ class Limits {
   Envelopes upper_;
   Envelopes lower_;               ///< For −q.
   Eigen::Index jerk_bounds_ = 0;  ///< Number of joints with a bound on jerk.
-
-  /// c J/A² of a joint with a bound on jerk and without a given envelope (docs/tick.md, Bounds on jerk). At least 1
-  /// is necessary. With 2, a stop along the envelope needs jerks of at most A²/c = J/2.
-  static constexpr Scalar kOffset = Scalar(2);
 };
 
 }  // namespace fpbm

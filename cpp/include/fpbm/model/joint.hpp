@@ -18,6 +18,10 @@ enum class JointType : unsigned char {
 template <typename Scalar = double>
 struct JointBounds {
   static constexpr Scalar kNone = std::numeric_limits<Scalar>::infinity();
+  /// c J/A² of the braking envelope of a joint with a bound on jerk and without a given envelope: the velocity v toward
+  /// an end at the distance D is bounded by v²/2A + v c/A ≤ D (docs/tick.md, Bounds on jerk). At least 1 is necessary.
+  /// With 2, a stop along the envelope needs jerks of at most A²/c = J/2.
+  static constexpr Scalar kOffset = Scalar(2);
 
   Scalar lower = -kNone;        ///< [rad] or [m]
   Scalar upper = kNone;         ///< [rad] or [m]

@@ -136,19 +136,26 @@ class FastestClock {
       if (q < limits.lower(k) - kRoundOff || q > limits.upper(k) + kRoundOff) {
         validation::reject("path", ": leaves the range of joint ", k, " at the fraction ",
                            (p - start_) / (clock_.width() * static_cast<double>(clock_.intervals())), ": position ", q,
-                           " is not in [", limits.lower(k), ", ", limits.upper(k), "]");
+                           " is ", std::max(q - limits.upper(k), limits.lower(k) - q), " outside of [", limits.lower(k),
+                           ", ", limits.upper(k), "]");
       }
-      if (std::isfinite(limits.deceleration(k))) {
-        const double distance = std::max(d[1](k) > 0.0 ? limits.upper(k) - q : q - limits.lower(k), 0.0);
-        const double envelope = std::sqrt(2.0 * limits.deceleration(k) * distance) - limits.velocity_offset(k);
-        velocity(k) = std::min(velocity(k), std::max(envelope, kLeastSpeed * velocity(k)));
-      }
+      const double distance = std::max(d[1](k) > 0.0 ? limits.upper(k) - q : q - limits.lower(k), 0.0);
+      velocity(k) = std::min(velocity(k), std::max(braking_velocity(limits.joint(k), distance), kLeastSpeed));
     }
     return ClockBounds(std::array<Vector<N>, 3>{d[1], d[2], d[3]}, velocity, limits.acceleration, limits.jerk);
   }
+  /// Largest velocity at a distance from an end of the range, from which a Tracker can stop: the braking envelope.
+  [[nodiscard]] static double braking_velocity(const JointBounds<double>& joint, double distance) noexcept {
+    if (std::isfinite(joint.deceleration))
+      return std::sqrt(2.0 * joint.deceleration * distance) - joint.velocity_offset;
+    const double ramp = joint.acceleration / joint.jerk;
+    const double offset = JointBounds<double>::kOffset * joint.acceleration * ramp;
+    return std::sqrt(offset * offset + 2.0 * joint.acceleration * distance) - offset;
+  }
+
   /// Round-off error of the spline for a joint that stands at an end of its range [rad] or [m].
   static constexpr double kRoundOff = 1e-12;
-  /// Least velocity in a braking envelope, as a fraction of the bound: at the end of its range, a joint may stand.
+  /// Least velocity of a braking envelope [rad/s] or [m/s]: at the end of its range, a joint may stand.
   static constexpr double kLeastSpeed = 1e-6;
 
   /// Time from the start of interval i to its fraction f [s], by the rule of Gauss with 5 points.

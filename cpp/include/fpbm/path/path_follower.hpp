@@ -18,6 +18,9 @@ namespace fpbm {
 /// reference is at rest there. The rate r of the clock changes to another value in minimum time within |ṙ| ≤ 4/3/ramp
 /// and |r̈| ≤ 16/3/ramp² (TimeOptimalAxis): from 0 to 1 in one ramp (argument of the constructor), and in at most 1.25
 /// ramps if the change reverses another change. r is always in [0, 1].
+///
+/// A follower of a kept path (kept_path()) has priority over time: a tracker at velocity level slows the clock instead
+/// of leaving the path, if the limits or the bounds do not admit the motion.
 template <typename Path_>
 class PathFollower {
  public:
@@ -27,30 +30,43 @@ class PathFollower {
   using Point = typename Space::template Point<Scalar>;
 
   /// start: origin of the path in the base frame. ramp: duration of a pause from full speed, or of a resumption [s].
-  /// With the default, x′(p) ṙ is at most 2.7 /s times the velocity of the path. Throws std::invalid_argument if ramp
-  /// is not positive.
-  PathFollower(const Path& path, const Point& start, Scalar ramp = Scalar(0.5))
+  /// With the default, x′(p) ṙ is at most 2.7 /s times the velocity of the path. keep_path: whether the path is kept.
+  /// Throws std::invalid_argument if ramp is not positive.
+  PathFollower(const Path& path, const Point& start, Scalar ramp = Scalar(0.5), bool keep_path = false)
       : path_(path),
         start_(start),
+        keeps_path_(keep_path),
         clock_{Scalar(1), {Scalar(4) / (Scalar(3) * ramp), Scalar(16) / (Scalar(3) * ramp * ramp)}} {
     validation::require_positive("ramp", ramp);
     end_ = Space::template compose<Scalar>(start, path.sample(path.duration()).x);
   }
 
   /// Repeated calls have no effect.
-  void pause() noexcept { change_rate(Scalar(0)); }
-  void resume() noexcept { change_rate(speed_); }
+  void pause() noexcept {
+    paused_ = true;
+    change_rate();
+  }
+  void resume() noexcept {
+    paused_ = false;
+    change_rate();
+  }
+  /// Stops the clock as pause() does, or ends this stop, for a tracker that stops on a kept path.
+  void hold(bool on) noexcept {
+    held_ = on;
+    change_rate();
+  }
   /// Changes the speed to a fraction of the speed of the path within a ramp; during a pause, after resume(). If the
   /// fraction is not in (0, 1], returns false without an effect.
   bool set_speed(Scalar fraction) noexcept {
     if (!(fraction > Scalar(0) && fraction <= Scalar(1))) return false;
-    const bool paused = rate_ == Scalar(0);
     speed_ = fraction;
-    if (!paused) change_rate(fraction);
+    change_rate();
     return true;
   }
   /// The fraction of the last call of set_speed().
   [[nodiscard]] Scalar speed() const noexcept { return speed_; }
+
+  [[nodiscard]] bool keeps_path() const noexcept { return keeps_path_; }
 
   /// Path time p [s], and whether the path has ended.
   [[nodiscard]] Scalar time() const noexcept { return now_.q; }
@@ -71,8 +87,21 @@ class PathFollower {
     return reference;
   }
 
-  /// Advances the clock by `seconds` [s].
-  void advance(Scalar seconds) noexcept {
+  /// Largest fraction for advance() with which the rate of the clock is at most 1; 1 while the clock stands.
+  [[nodiscard]] Scalar most_fraction(Scalar seconds) const noexcept {
+    const Scalar fastest = std::max(now_.v, after(seconds).v);
+    return fastest > Scalar(0) ? std::max(Scalar(1) / fastest, Scalar(1)) : Scalar(1);
+  }
+
+  /// Advances the clock by `seconds` [s]. fraction: displacement along the path that the arm has moved, relative to the
+  /// displacement of the reference.
+  void advance(Scalar seconds, Scalar fraction = Scalar(1)) noexcept {
+    if (fraction != Scalar(1)) {
+      const AxisState<Scalar> next = after(seconds);
+      now_ = {now_.q + fraction * (next.q - now_.q), std::min(fraction * next.v, Scalar(1)), Scalar(0)};
+      ticks_ = Scalar(0);
+      return;
+    }
     if (!is_steady()) {
       now_ = after(seconds);
       return;
@@ -88,7 +117,8 @@ class PathFollower {
   }
 
  private:
-  void change_rate(Scalar rate) noexcept {
+  void change_rate() noexcept {
+    const Scalar rate = paused_ || held_ ? Scalar(0) : speed_;
     if (rate == rate_) return;
     rate_ = rate;
     ticks_ = Scalar(0);
@@ -108,6 +138,9 @@ class PathFollower {
   Path path_;
   Point start_;
   Point end_;
+  bool keeps_path_;
+  bool paused_ = false;
+  bool held_ = false;  ///< Whether a tracker stops the clock.
   TimeOptimalAxis<Scalar> clock_;
   AxisState<Scalar> now_{Scalar(0), Scalar(1), Scalar(0)};  ///< p, r and ṙ.
   Scalar rate_{1};                                          ///< The clock changes its rate to this rate.

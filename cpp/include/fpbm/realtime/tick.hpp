@@ -20,6 +20,9 @@ struct TickOfRows {
   Scalar scale;                ///< Task scale: 1 for the whole task, 0 if the arm brakes.
   JointBits saturated;         ///< Bit i is set if joint i is on a bound.
   Vector<Rows, Scalar> error;  ///< x ⊖ f(q) at the start of the tick [m, rad].
+  /// Displacement along a kept path (PathFollower) in the tick, relative to the displacement of the reference. Below 1,
+  /// the status is at least kSlowed. Above 1, the clock slows down less than asked.
+  Scalar path_fraction = Scalar(1);
 };
 
 /// Result of one tick of a control loop.
@@ -78,7 +81,8 @@ struct TrackerOptions {
   /// level: 0.7 of each bound on acceleration and 0.35 of each bound on velocity. stop() keeps the first level: its
   /// references are held at rest, and the joints stop in its null space. A stop that keeps the first level takes longer
   /// than a stop of each joint by itself. A task that is farther than 0.001 characteristic lengths, or 0.001 rad, from
-  /// its reference stays at its current point. No effect on resolve_measured(), and on a tracker of a single level.
+  /// its reference stays at its current point. On a kept path (PathFollower), also of a single level, the arm stops on
+  /// the path, within the ramp of the follower. No effect on resolve_measured().
   bool keep_first_level = false;
   /// Largest age of the states that are passed to resolve_measured() [ticks]: the time from the measurement to the
   /// start of the tick in which the robot realises the command. Most robots need one to three ticks. 0: exact and

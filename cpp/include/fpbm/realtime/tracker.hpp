@@ -85,15 +85,15 @@ class Tracker {
   /// TargetFilter, which continues. For a stack, pass a source for each task in the order of the stack, or References.
   template <typename... Sources>
   Result tick(Sources&... sources) noexcept {
-    const Result result =
-        advance(References::of([&](Scalar t) noexcept { return joined(Space{}, t, sources...); }, state_.dt()));
-    (advance_source(sources, state_.dt(), state_.stopping), ...);
+    const Result result = advance(references_of(Space{}, state_.dt(), state_.stopping, sources...));
+    (advance_source(sources, state_.dt(), state_.stopping, result.path_fraction), ...);
     return result;
   }
 
   /// One tick with references.
   Result advance(const References& references) noexcept {
     Result result = state_.idle(state_.tick.joints);
+    state_.most_path_fraction = kLevel == Level::kVelocity ? references.most_path_fraction : Scalar(0);
     const auto desired = desire(arm_, scheme_, state_, references, result);
     finish_tick(desired, state_.rows(desired.u), result);
     return result;
@@ -187,7 +187,12 @@ class Tracker {
   void finish_tick(const Desired_& desired, const Rows_& rows, Result& result) noexcept {
     const bool damped = result.status == Status::kDamped;
     const JointVector u = limit(state_, desired, rows, result);
-    account(state_, desired, prove(state_, u, result), damped, result);
+    JointState next = prove(state_, u, result);
+    if (state_.on_path()) {
+      result.path_fraction = path_fraction(desired, state_.tick.motion_to(next), state_.most_path_fraction);
+    }
+    account(state_, desired, std::move(next), damped, result);
+    if (result.path_fraction < Scalar(1)) result.status = worse(result.status, Status::kSlowed);
   }
 
   Arm arm_;

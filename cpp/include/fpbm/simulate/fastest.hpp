@@ -2,19 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
-#include <optional>
-#include <vector>
+#include <memory>
 
 #include "fpbm/core/detail/validation.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/path/detail/timed_path.hpp"
-#include "fpbm/path/detail/tip_bounds.hpp"
 #include "fpbm/path/fastest_clock.hpp"
 #include "fpbm/path/spline.hpp"
 #include "fpbm/simulate/detail/anchored_path.hpp"
+#include "fpbm/simulate/detail/joint_path.hpp"
 #include "fpbm/simulate/detail/motion.hpp"
 #include "fpbm/simulate/detail/motion_differences.hpp"
 #include "fpbm/simulate/rollout.hpp"
@@ -22,44 +20,25 @@
 
 namespace fpbm {
 
-/// Options of fastest().
+/// Options of fastest() and kept_path().
 struct FastestOptions {
-  double dt = 1e-3;      ///< Time between samples [s]; the motion lasts a multiple of dt.
-  TipBounds<> tip = {};  ///< Bounds on velocity and acceleration of the tip; angular bounds are not read.
+  double dt = 1e-3;  ///< Time between samples [s]; the motion lasts a multiple of dt.
+  double tip_speed = std::numeric_limits<double>::infinity();         ///< Bound on the speed of the tip [m/s].
+  double tip_acceleration = std::numeric_limits<double>::infinity();  ///< Bound on the acceleration of the tip [m/s²].
+  double reserve = 0.0;  ///< The motion keeps the bounds of the joints also if it is faster by this fraction.
 };
 
-/// A joint path, and the result of the motion along the path. If the arm cannot follow the path, the joint path is
-/// empty, and the time of the result is the time of the path that can be followed.
+/// The limits with a reserve: a motion within these limits that is faster by the fraction `reserve` keeps the limits.
 template <int N>
-struct JointPath {
-  RolloutResult<N> result;
-  std::optional<Spline<N>> joints;
-};
-
-/// The joint positions of a motion without limits along a path of a duration [s], as a spline.
-/// nodes(intervals, q) executes the motion with this number of equal steps, adds the positions to q, and returns the
-/// result. The number of intervals is doubled until the motion follows the path, and the positions in the middle of the
-/// intervals are within kAccuracy of the spline.
-template <int N, typename Nodes>
-[[nodiscard]] JointPath<N> joint_path(double duration, const Nodes& nodes) {
-  constexpr double kAccuracy = 1e-8;  // [rad] or [m]; the tip is then within 1e-8 m of most paths.
-  constexpr int kLeast = 600;
-  constexpr int kMost = 9600;
-  JointPath<N> path{};
-  for (int intervals = kLeast; intervals <= kMost; intervals *= 2) {
-    std::vector<Vector<N>> q;
-    path.result = nodes(intervals, q);
-    if (failed(path.result.status)) continue;  // Maybe the steps are too long.
-    std::vector<double> p(q.size());
-    for (std::size_t i = 0; i < p.size(); ++i) p[i] = static_cast<double>(i) * duration / intervals;
-    double deviation = path.joints ? 0.0 : std::numeric_limits<double>::infinity();
-    for (std::size_t i = 1; path.joints && i < p.size(); i += 2) {
-      deviation = std::max(deviation, (path.joints->at(p[i]).x - q[i]).cwiseAbs().maxCoeff());
-    }
-    if (deviation < kAccuracy) break;
-    path.joints = Spline<N>(q, p);
-  }
-  return path;
+[[nodiscard]] JointLimits<N> with_reserve(JointLimits<N> limits, double reserve) {
+  validation::require_non_negative("reserve", reserve);
+  const double slower = 1.0 / (1.0 + reserve);
+  limits.velocity *= slower;
+  limits.velocity_offset *= slower;
+  limits.acceleration *= slower * slower;
+  limits.deceleration *= slower * slower;
+  limits.jerk *= slower * slower * slower;
+  return limits;
 }
 
 /// The clock of FastestClock for joint positions along a path, slowed so that the motion lasts a multiple of dt and
@@ -68,6 +47,7 @@ template <int N, typename Nodes>
 template <int N, typename Path, typename Kept>
 [[nodiscard]] FastestClock fastest_clock(const Spline<N>& joints, const Path& path, const JointLimits<N>& limits,
                                          Kept& bounds, const FastestOptions& options) {
+  const JointLimits<N> reserved = with_reserve(limits.complete(), options.reserve);
   using Space = typename Path::Space;
   constexpr double kRest = 1e-9;  // [m, rad], for the round-off errors of splines.
   const double duration = path.duration();
@@ -77,16 +57,16 @@ template <int N, typename Path, typename Kept>
       validation::reject("path", ": must begin and end at rest with zero acceleration: use the time law Quintic");
     }
   }
-  const TipBounds<>& tip = options.tip;
-  const bool bounds_tip = std::isfinite(tip.velocity) || std::isfinite(tip.acceleration);
+  const bool bounds_tip = std::isfinite(options.tip_speed) || std::isfinite(options.tip_acceleration);
   const auto add = [&](double p, const Vector<N>& q, const Vector<N>& dq, ClockBounds& place) {
-    if (!bounds.empty()) place.add_speed(bounds.speed_ratio(q, dq));
+    if (!bounds.empty()) place.add_speed((1.0 + options.reserve) * bounds.speed_ratio(q, dq));
     if (!bounds_tip) return;
     constexpr int kLinear = Space::kRows - Space::kTurns;
     const Reference<Space> at = path.sample(p);
-    place.add_tip(at.xd.template head<kLinear>(), at.xdd.template head<kLinear>(), tip.velocity, tip.acceleration);
+    place.add_tip(at.xd.template head<kLinear>(), at.xdd.template head<kLinear>(), options.tip_speed,
+                  options.tip_acceleration);
   };
-  FastestClock clock(joints, limits, add);
+  FastestClock clock(joints, reserved, add);
   const auto stretch = [&](double factor) {
     clock.stretch(std::ceil(factor * clock.duration() / options.dt) * options.dt);
   };
@@ -94,11 +74,16 @@ template <int N, typename Path, typename Kept>
   // Few motions exceed a bound between the checks of FastestClock. After one round, no random motion does.
   constexpr int kRounds = 5;
   for (int round = 0; round < kRounds; ++round) {
-    const double excess = excess_of_differences(joints, clock, limits, options.dt);
+    const double excess = excess_of_differences(joints, clock, reserved, options.dt);
     if (!(excess > 1.0)) break;
     stretch(excess);
   }
   return clock;
+}
+
+/// Slows a clock so that the motion lasts at least `duration` [s], and a multiple of dt [s].
+inline void stretch_to(FastestClock& clock, double duration, double dt) {
+  if (duration > clock.duration()) clock.stretch(std::ceil(duration / dt - 1e-9) * dt);  // Without round-off errors.
 }
 
 /// Calls `record(const Sample&)` for each time of a motion along a joint path with a clock, from the start of the path.
@@ -131,6 +116,23 @@ RolloutResult<Arm::kDof> play(const Arm& arm, const Path& path, const Spline<Arm
   return result;
 }
 
+/// A path for a PathFollower that keeps the path, from the posture q0 at rest: `path` with the clock of
+/// fastest_clock(), at least as long as `path`. options.reserve is for motions that the clock does not know. The scheme
+/// is the scheme of the tracker. Construct the follower with the tip of q0, the ramp() of the result and keep_path =
+/// true. Throws std::invalid_argument as rollout() and fastest_clock() do, and if the arm cannot follow the path.
+/// Allocates.
+template <typename Arm, typename Path, typename Scheme, typename Kept>
+[[nodiscard]] TimedPath<Path> kept_path(const Arm& arm, const Path& path, const Scheme& scheme,
+                                        const Vector<Arm::kDof>& q0, const JointLimits<Arm::kDof>& limits,
+                                        Kept&& bounds, const FastestOptions& options) {
+  const auto along = joint_path_of(arm, path, scheme, q0, bounds);
+  require_followed(along, path.duration());
+  FastestClock clock = fastest_clock(*along.joints, path, limits, bounds, options);
+  stretch_to(clock, path.duration(), options.dt);
+  const double ramp = least_ramp(*along.joints, clock, limits, options.dt);
+  return {path, std::make_shared<const FastestClock>(clock), ramp};
+}
+
 /// Moves an arm along a path in the least time within its joint limits: the joint positions of a velocity-level scheme
 /// along the path (rollout()), with the clock of FastestClock. The tip stays on the path.
 ///
@@ -143,17 +145,8 @@ template <typename Arm, typename Path, typename Scheme, typename Kept, typename 
 RolloutResult<Arm::kDof> fastest(const Arm& arm, const Path& path, const Scheme& scheme, const Vector<Arm::kDof>& q0,
                                  const JointLimits<Arm::kDof>& limits, Kept&& bounds, const FastestOptions& options,
                                  Recorder&& record) {
-  static_assert(Scheme::kLevel == Level::kVelocity, "fastest() needs a scheme at velocity level");
   validation::require_positive("dt", options.dt);
-  const auto path_of = joint_path<Arm::kDof>(path.duration(), [&](int intervals, std::vector<Vector<Arm::kDof>>& q) {
-    const TimeGrid<double> nodes(path.duration(), path.duration() / intervals);
-    const auto add = [&](const auto& sample) {
-      if (!bounds.empty()) bounds.require(sample.q);
-      q.push_back(sample.q);
-      return true;
-    };
-    return rollout(arm, path, scheme, State<Arm::kDof>{q0, filled<Vector<Arm::kDof>>(q0.size())}, nodes, add);
-  });
+  const auto path_of = joint_path_of(arm, path, scheme, q0, bounds);
   if (!path_of.joints) return path_of.result;
   const FastestClock clock = fastest_clock(*path_of.joints, path, limits, bounds, options);
   return play(arm, path, *path_of.joints, clock, TimeGrid<double>(clock.duration(), options.dt), record);

@@ -15,9 +15,13 @@ class TimedPath {
   using Scalar = double;
   using Space = typename Path::Space;
 
-  TimedPath(const Path& path, std::shared_ptr<const FastestClock> clock) : path_(path), clock_(std::move(clock)) {}
+  /// ramp: least ramp of a PathFollower [s].
+  TimedPath(const Path& path, std::shared_ptr<const FastestClock> clock, double ramp)
+      : path_(path), clock_(std::move(clock)), ramp_(ramp) {}
 
   [[nodiscard]] double duration() const noexcept { return clock_->duration(); }
+  /// Least ramp of a PathFollower with which no change of its rate exceeds a bound of the joints [s].
+  [[nodiscard]] double ramp() const noexcept { return ramp_; }
 
   /// x(p), x′ṗ, x″ṗ² + x′p̈; outside of the motion, at rest at the nearest end.
   [[nodiscard]] Reference<Space> sample(double t) const noexcept {
@@ -31,6 +35,7 @@ class TimedPath {
  private:
   Path path_;
   std::shared_ptr<const FastestClock> clock_;
+  double ramp_;
 };
 
 }  // namespace fpbm

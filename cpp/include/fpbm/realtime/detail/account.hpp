@@ -52,7 +52,7 @@ void account(TrackerState& state, const Desired& desired, typename TrackerState:
   result.qdd = tick.acceleration_to(next);
   const auto q = tick.joints.q;
   tick.store(std::move(next), result.qdd);
-  const bool follows = !state.stopping && !failed(result.status);
+  const bool follows = !state.stops() && !failed(result.status);
   if (follows) update_progress(state, desired.loop.arm, q, desired.now, damped, result);
   state.lower_levels.report(result);
   report_levels(desired.loop.kinematics, desired.now.x, result);

@@ -18,6 +18,7 @@ struct Desired {
   Loop loop;                     ///< Kinematics in the middle of the tick, and the motion of the first level.
   Reference<Space, Scalar> now;  ///< Reference at the start of the tick, not corrected.
   Vector<N, Scalar> u;           ///< Desired motion: accelerations [rad/s²], or velocities [rad/s].
+  Vector<N, Scalar> still{};     ///< On a kept path: the desired velocities for a reference at rest [rad/s].
 };
 
 /// Begins the correction of the references with the errors at the start of a tick.
@@ -60,7 +61,16 @@ template <typename Arm, typename Scheme, typename TrackerState, typename Space, 
   if (state.correction.active()) {
     for (auto& stage : references.stages) stage = state.correction(stage);
   }
-  result.status = desired.loop.resolve(state.tick.update_middle(desired.loop, references, gains_of<Scalar>(scheme)));
+  const auto middle = state.tick.update_middle(desired.loop, references, gains_of<Scalar>(scheme));
+  if constexpr (TrackerState::kLevel == Level::kVelocity) {
+    if (state.on_path()) {
+      auto at_rest = middle;
+      at_rest.xd -= references.template middle<Level::kVelocity>(state.tick.reference_change).xd;
+      (void)desired.loop.resolve(at_rest);  // If this fails, the reference of the path fails also.
+      desired.still = desired.loop.motion();
+    }
+  }
+  result.status = desired.loop.resolve(middle);
   if (failed(result.status)) {
     state.tick.reference_change = filled<Vector<Space::kRows, Scalar>>(Space::kRows);  // Maybe not finite.
     return desired;
@@ -84,7 +94,7 @@ template <typename Arm, typename Scheme, typename TrackerState, typename Referen
   Desired<ClosedLoop<Arm, Scheme, Space>, Space, Arm::kDof, Scalar> desired{
       {arm, scheme, {}, joints, filled<typename TrackerState::JointVector>(joints.q.size())}, now, u};
   const bool moves_away = state.bounds.moves_away();
-  if (moves_away || state.stopping || !state.admits(rows, u)) {
+  if (moves_away || state.stops() || !state.admits(rows, u)) {
     points_of(arm, joints.q, desired.loop.kinematics, 0);
     (void)state.tick.update_middle(desired.loop, references, gains_of<Scalar>(scheme));
   }

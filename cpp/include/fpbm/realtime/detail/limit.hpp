@@ -6,6 +6,7 @@
 #include "fpbm/linalg/detail/entrywise.hpp"
 #include "fpbm/realtime/detail/followable_fraction.hpp"
 #include "fpbm/realtime/detail/joint_approach.hpp"
+#include "fpbm/realtime/detail/path_motion.hpp"
 #include "fpbm/realtime/detail/tracker_state.hpp"
 
 namespace fpbm {
@@ -59,7 +60,7 @@ template <typename TrackerState, typename Desired, typename Rows_>
   const auto& last = state.tick.last;
   Scalar fraction(1);  // Fraction of the velocities of the scheme.
   if constexpr (TrackerState::kLevel == Level::kVelocity) {
-    if (!failed(result.status)) fraction = followable_part(state, desired);
+    if (!failed(result.status) && !state.on_path()) fraction = followable_part(state, desired);
   }
   const auto slowed = [&](const JointVector& v) {
     return entrywise(v, [&](Eigen::Index i) { return fraction * v.coeff(i); });
@@ -76,7 +77,7 @@ template <typename TrackerState, typename Desired, typename Rows_>
   auto found = with_scale(tasks, joints.qd, Scalar(0));
   if (braking) {
     found.u = limiter.brake(joints, last, stalled ? rows : Rows_{}).u;
-  } else if (!state.stopping) {
+  } else if (!state.stops()) {
     found = limiter.motion(tasks, joints, u, last, rows);
   } else if constexpr (TrackerState::kHasLevels) {
     found = limiter.stop_on_first_level(tasks, joints, u, last, rows);
@@ -96,11 +97,17 @@ template <typename TrackerState, typename Desired, typename Rows_>
                                                        typename TrackerState::Result& result) noexcept {
   const typename TrackerState::JointVector& u = desired.u;
   if (!state.is_brakable(state.tick.after(u))) result.status = Status::kNotFinite;
-  if (state.progress.recovering() && !state.stopping && !failed(result.status)) {
+  if (state.progress.recovering() && !state.stops() && !failed(result.status)) {
     return recovery_motion(state, rows, result);
   }
   if (state.progress.stalled()) result.status = worse(result.status, Status::kStalled);
-  if (!state.stopping && result.status < Status::kStalled && state.admits(rows, u)) return u;
+  if (!state.stops() && result.status < Status::kStalled) {
+    if (state.admits(rows, u)) return u;
+    if (state.on_path()) {
+      const auto box = state.limits().box(state.tick.joints, state.tick.last);
+      if (const auto found = motion_on_path(desired, box, rows, state.most_path_fraction)) return *found;
+    }
+  }
   return limited_motion(state, desired, u, rows, result);
 }
 
@@ -116,7 +123,7 @@ template <typename TrackerState, typename Limiter, typename Desired>
   auto tasks = jacobian_in_metres(desired.loop.kinematics);
   if constexpr (TrackerState::kHasLevels) tasks.set_first_motion(desired.loop.first);
   auto found = with_scale(tasks, last, typename TrackerState::Scalar(0));
-  const bool braking = state.stopping || failed(result.status);
+  const bool braking = state.stops() || failed(result.status);
   if (braking) {
     found.u = limiter.brake(measured, last).u;
   } else {

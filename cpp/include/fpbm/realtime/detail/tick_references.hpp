@@ -12,7 +12,8 @@ namespace fpbm {
 template <typename Space, typename Scalar = double>
 struct TickReferences {
   std::array<Reference<Space, Scalar>, 3> stages;
-  Number<Scalar> dt;  ///< Length of the tick [s].
+  Number<Scalar> dt;                                      ///< Length of the tick [s].
+  Number<Scalar> most_path_fraction = Number<Scalar>(0);  ///< Largest Tick::path_fraction; 0: the path is not kept.
 
   /// ahead(seconds): reference after `seconds` [s] of the tick; noexcept.
   template <typename Ahead>
@@ -56,7 +57,7 @@ struct TickReferences {
   /// for example with lanes.
   template <typename Other>
   [[nodiscard]] TickReferences<Space, Other> from(const typename Space::template Point<Other>& start) const noexcept {
-    TickReferences<Space, Other> placed{{}, dt};
+    TickReferences<Space, Other> placed{{}, dt, most_path_fraction};
     for (std::size_t i = 0; i < stages.size(); ++i) {
       placed.stages[i] = stages[i].template cast<Other>();
       placed.stages[i].x = Space::template compose<Other>(start, placed.stages[i].x);

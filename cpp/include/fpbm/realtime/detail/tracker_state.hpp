@@ -41,7 +41,7 @@ struct TrackerState {
         progress(options, start.q, continuous_),
         lower_levels(options.stall_time, options.dt),
         continuous(continuous_),
-        keeps_first_level(kHasLevels && options.keep_first_level),
+        keeps_first_level(options.keep_first_level),
         returning(options.recover_start && !limits_.is_viable(start, qdd0)) {}
 
   TickState<kLevel, Space, N, Scalar> tick;
@@ -57,13 +57,18 @@ struct TrackerState {
   bool keeps_first_level;
   bool returning;  ///< Whether the joints return from a start outside their bounds.
   bool stopping = false;
+  Scalar most_path_fraction = Scalar(0);  ///< Of the references of the tick.
 
   [[nodiscard]] Scalar dt() const noexcept { return tick.motion.dt; }
   [[nodiscard]] const MotionLimits& limits() const noexcept { return limiter.limits(); }
+  /// Whether the references of the tick belong to a kept path.
+  [[nodiscard]] bool on_path() const noexcept { return most_path_fraction > Scalar(0); }
+  /// Whether the arm stops. On a kept path, the clock of the path stops an arm that keeps its first level.
+  [[nodiscard]] bool stops() const noexcept { return stopping && !(on_path() && keeps_first_level); }
   /// Whether the arm stops and keeps the first level.
-  [[nodiscard]] bool keeps_stopping() const noexcept { return stopping && keeps_first_level; }
+  [[nodiscard]] bool keeps_stopping() const noexcept { return kHasLevels && stops() && keeps_first_level; }
   /// Whether each joint brakes by itself. A stop that keeps the first level moves the joints together.
-  [[nodiscard]] bool brakes(Status status) const noexcept { return (stopping && !keeps_first_level) || failed(status); }
+  [[nodiscard]] bool brakes(Status status) const noexcept { return (stops() && !keeps_stopping()) || failed(status); }
 
   void resume() noexcept {
     stopping = false;

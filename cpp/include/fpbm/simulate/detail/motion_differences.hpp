@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "fpbm/core/types.hpp"
 #include "fpbm/model/joint.hpp"
@@ -9,6 +10,25 @@
 #include "fpbm/path/spline.hpp"
 
 namespace fpbm {
+
+/// Calls f(velocity, acceleration, jerk) with the differences of the positions of a motion at every dt [s], from rest
+/// to rest.
+template <int N, typename F>
+void each_difference(const Spline<N>& joints, const FastestClock& clock, double dt, F&& f) {
+  Vector<N> q = joints.at(clock.at(0.0).s).x;
+  Vector<N> velocity = filled<Vector<N>>(q.size());
+  Vector<N> acceleration = velocity;
+  const auto ticks = static_cast<int>(std::lround(clock.duration() / dt));
+  for (int k = 1; k <= ticks + 2; ++k) {
+    const Vector<N> next = joints.at(clock.at(k * dt).s).x;
+    const Vector<N> v = (next - q) / dt;
+    const Vector<N> a = (v - velocity) / dt;
+    f(v, a, Vector<N>((a - acceleration) / dt));
+    q = next;
+    velocity = v;
+    acceleration = a;
+  }
+}
 
 /// The factor by which a clock must be slower, so that the differences of positions at every dt [s] keep the bounds on
 /// velocity, acceleration and jerk, from rest to rest.
@@ -19,22 +39,48 @@ template <int N>
   const auto ratio = [](const Vector<N>& difference, const Vector<N>& bound) {
     return difference.cwiseAbs().cwiseQuotient(bound).maxCoeff();
   };
-  Vector<N> q = joints.at(clock.at(0.0).s).x;
-  Vector<N> velocity = filled<Vector<N>>(q.size());
-  Vector<N> acceleration = velocity;
   double excess = 0.0;
-  const auto ticks = static_cast<int>(std::lround(clock.duration() / dt));
-  for (int k = 1; k <= ticks + 2; ++k) {
-    const Vector<N> next = joints.at(clock.at(k * dt).s).x;
-    const Vector<N> v = (next - q) / dt;
-    const Vector<N> a = (v - velocity) / dt;
+  each_difference(joints, clock, dt, [&](const Vector<N>& v, const Vector<N>& a, const Vector<N>& j) {
     excess = std::max({excess, ratio(v, complete.velocity), std::sqrt(ratio(a, complete.acceleration)),
-                       std::cbrt(ratio((a - acceleration) / dt, complete.jerk))});
-    q = next;
-    velocity = v;
-    acceleration = a;
-  }
+                       std::cbrt(ratio(j, complete.jerk))});
+  });
   return excess;
+}
+
+/// Least ramp of a PathFollower with which no change of its rate r exceeds the bounds of the joints on acceleration and
+/// jerk [s]; at most kLongestRamp (docs/paths.md, In a control loop).
+///
+/// A motion with the velocity v, the acceleration a and the jerk j has, at the rate r, the acceleration a r² + v ṙ and
+/// the jerk j r³ + 3 a r ṙ + v r̈. While |ṙ| is k times its bound c/ramp, c = 4/3, the rate is r ≤ 1 − k²/6: a change
+/// of the rate begins or ends at a rate of at most 1.
+template <int N>
+[[nodiscard]] double least_ramp(const Spline<N>& joints, const FastestClock& clock, const JointLimits<N>& limits,
+                                double dt) {
+  constexpr double kLongestRamp = 10.0;
+  constexpr double kRate = 4.0 / 3.0;  // Bounds of PathFollower on ṙ and r̈, times the ramp and its square.
+  constexpr double kChange = 16.0 / 3.0;
+  constexpr int kSteps = 16;
+  // Between the ticks. Without it, 1 of 40 random paths is left when an operator changes the speed.
+  constexpr double kSafety = 1.02;
+  const JointLimits<N> complete = limits.complete();
+  double inverse = std::numeric_limits<double>::infinity();  // 1/ramp.
+  each_difference(joints, clock, dt, [&](const Vector<N>& v, const Vector<N>& a, const Vector<N>& j) {
+    for (Eigen::Index i = 0; i < v.size(); ++i) {
+      const double speed = std::abs(v(i));
+      if (!(speed > 0.0)) continue;
+      for (int step = 1; step <= kSteps; ++step) {
+        const double k = static_cast<double>(step) / kSteps;
+        const double r = 1.0 - k * k / 6.0;
+        const double slack = complete.acceleration(i) - std::abs(a(i)) * r * r;
+        inverse = std::min(inverse, slack / (speed * k * kRate));
+        const double jerk = std::max(complete.jerk(i) - std::abs(j(i)) * r * r * r, 0.0);
+        if (!std::isfinite(jerk)) continue;
+        const double half = 1.5 * std::abs(a(i)) * r * k * kRate;  // speed kChange x² + 2 half x ≤ jerk, x = 1/ramp.
+        inverse = std::min(inverse, jerk / (half + std::sqrt(half * half + speed * kChange * jerk)));
+      }
+    }
+  });
+  return kSafety / std::max(inverse, 1.0 / kLongestRamp);
 }
 
 }  // namespace fpbm

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+#include "fpbm/core/types.hpp"
+#include "fpbm/limits/detail/rows.hpp"
+#include "fpbm/linalg/detail/entrywise.hpp"
+#include "fpbm/linalg/detail/sums.hpp"
+
+/// A tick at velocity level on a kept path (docs/paths.md, In a control loop). The velocity of the scheme is linear in
+/// the velocity of the reference. With the fraction σ of the velocity along the path, the velocity of the joints is
+/// still + σ (u − still), where `still` is the velocity of the scheme for a reference at rest. The tip stays on the
+/// path for every σ.
+namespace fpbm {
+
+/// The fraction σ in [0, most] to which a velocity u of the joints corresponds: the nearest σ.
+template <typename Desired, int N, typename Scalar>
+[[nodiscard]] Scalar path_fraction(const Desired& desired, const Vector<N, Scalar>& u, Scalar most) noexcept {
+  const auto change = [&](Eigen::Index i) { return desired.u.coeff(i) - desired.still.coeff(i); };
+  const Scalar square = sum_over(u, [&](Eigen::Index i) { return change(i) * change(i); });
+  const Scalar moved = sum_over(u, [&](Eigen::Index i) { return change(i) * (u.coeff(i) - desired.still.coeff(i)); });
+  if (square == Scalar(0)) return Scalar(1);
+  return moved > Scalar(0) ? std::min(moved / square, most) : Scalar(0);
+}
+
+/// The velocity on the path with the fraction σ in [0, most] nearest to 1 that the limits and the rows admit, if there
+/// is one. box: of the velocities.
+template <typename Desired, typename Box, int N, int P, typename Scalar>
+[[nodiscard]] std::optional<Vector<N, Scalar>> motion_on_path(const Desired& desired, const Box& box,
+                                                              const Rows<N, P, Scalar>& rows, Scalar most) noexcept {
+  const auto& still = desired.still;
+  const Vector<N, Scalar> change = desired.u - still;
+  Scalar low(0);
+  Scalar high = most;
+  // Admits only fractions with lower ≤ σ rate ≤ upper.
+  const auto narrow = [&](Scalar rate, Scalar lower, Scalar upper) noexcept {
+    if (rate == Scalar(0)) {
+      if (lower > Scalar(0) || upper < Scalar(0)) high = Scalar(-1);
+      return;
+    }
+    low = std::max(low, (rate > Scalar(0) ? lower : upper) / rate);
+    high = std::min(high, (rate > Scalar(0) ? upper : lower) / rate);
+  };
+  for (Eigen::Index i = 0; i < still.size(); ++i) narrow(change(i), box.lower(i) - still(i), box.upper(i) - still(i));
+  if constexpr (P > 0) {
+    for (Eigen::Index k = 0; k < rows.count; ++k) {
+      narrow(rows.along(k, change), -std::numeric_limits<Scalar>::infinity(), -rows.excess(k, still));
+    }
+  }
+  if (!(low <= high)) return {};
+  return box.nearest(still + std::clamp(Scalar(1), low, high) * change);
+}
+
+}  // namespace fpbm
