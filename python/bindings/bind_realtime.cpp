@@ -196,15 +196,13 @@ class PyTracker {
     return visit("", [&](auto& tracker, auto space) -> PyFollower {
       using Space = decltype(space);
       AnyPath<Space> any = path.as<Space>();
-      double slow = ramp;
+      std::shared_ptr<const KeptMotion> kept;
       if (keep_path) {
         const Motion<Space> motion{&tracker.arm(), any, scheme_, tracker.state(), TimeGrid<double>(dt_, dt_), nullptr};
-        const auto [clock, least] =
-            motion.kept_clock(limits_, tracker.bounds(), any.duration(), options.shortest, options.fastest);
-        any = AnyPath<Space>(TimedPath(any, clock, least));
-        slow = std::max(ramp, least);
+        kept = motion.kept_motion(limits_, tracker.bounds(), any.duration(), options.shortest, options.fastest);
+        any = AnyPath<Space>(TimedPath(any, kept));
       }
-      return {{{"", AnyFollower<Space>(any, tracker.tip(), slow, keep_path)}}};
+      return {{{"", AnyFollower<Space>(any, tracker.tip(), ramp, kept)}}};
     });
   }
 

@@ -143,12 +143,12 @@ Outcomes rollout(const Model& arm, const Path& path, const Scheme& scheme, const
       const LimitOptions& limits = *options.limits();
       const auto [tip_speed, shortest] = kept;
       const FastestOptions fastest{dt, tip_speed, kUnbounded, limits.reserve};
-      const auto [clock, ramp] = motion.kept_clock(limits.limits, limits.bounds, options.duration(), shortest, fastest);
-      same = AnyPath<Space>(TimedPath(same, clock, ramp));
-      motion.grid = TimeGrid<double>(clock->duration(), motion.grid.dt(), hold);
+      motion.kept = motion.kept_motion(limits.limits, limits.bounds, options.duration(), shortest, fastest);
+      same = AnyPath<Space>(TimedPath(same, motion.kept));
+      motion.grid = TimeGrid<double>(same.duration(), motion.grid.dt(), hold);
       if (stack) {
-        stack->duration = clock->duration();
-        for (TaskPath& each : stack->paths) each.keep(clock, ramp);
+        stack->duration = same.duration();
+        for (TaskPath& each : stack->paths) each.keep(motion.kept);
       }
     }
     const MotionArrays<Space> arrays(motion.grid.samples(), arm.dof(), options.limits(), motion.stack);

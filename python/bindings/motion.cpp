@@ -36,8 +36,9 @@ JointPath<kDynamic> Motion<Space>::joint_path(double duration) const {
 }
 
 template <typename Space>
-KeptClock Motion<Space>::kept_clock(const JointLimits<kDynamic>& limits, AnyBounds bounds, double duration,
-                                    double shortest, const FastestOptions& options) const {
+std::shared_ptr<const KeptMotion> Motion<Space>::kept_motion(const JointLimits<kDynamic>& limits, AnyBounds bounds,
+                                                             double duration, double shortest,
+                                                             const FastestOptions& options) const {
   if (scheme.level != Level::kVelocity) {
     validation::reject("keep_path", " needs a scheme at velocity level, for example MVN() or WMVN(weights)");
   }
@@ -49,8 +50,7 @@ KeptClock Motion<Space>::kept_clock(const JointLimits<kDynamic>& limits, AnyBoun
   require_followed(along, duration);
   FastestClock found = clock(*along.joints, limits, bounds, options);
   stretch_to(found, shortest, options.dt);
-  const double ramp = least_ramp(*along.joints, found, limits, options.dt);
-  return {std::make_shared<const FastestClock>(found), ramp};
+  return fpbm::kept_motion(*along.joints, found, limits, bounds, options.dt);
 }
 
 template struct Motion<Position<2>>;

@@ -71,12 +71,6 @@ struct LimitOptions {
   double reserve = 0.0;      ///< Of the duration to the least duration, with keeps_path.
 };
 
-/// The clock of a path that a follower keeps, and its least ramp [s].
-struct KeptClock {
-  std::shared_ptr<const FastestClock> clock;
-  double ramp;
-};
-
 /// One motion along a path.
 template <typename Space>
 struct Motion {
@@ -85,7 +79,8 @@ struct Motion {
   const Scheme& scheme;
   State<kDynamic> start;
   TimeGrid<double> grid;
-  const StackOptions* stack;  ///< Null if the tip's task is the only task.
+  const StackOptions* stack;                         ///< Null if the tip's task is the only task.
+  std::shared_ptr<const KeptMotion> kept = nullptr;  ///< Given if the motion keeps its path.
 
   /// rollout() of the motion. Throws std::invalid_argument if scheme or start do not fit the arm.
   RolloutResult<kDynamic> simulate(const Output<Space>& output) const;
@@ -96,11 +91,12 @@ struct Motion {
 
   /// joint_path() of the motion, whose path has a duration [s].
   [[nodiscard]] JointPath<kDynamic> joint_path(double duration) const;
-  /// The clock of kept_path() for the motion, whose path has a duration [s]. shortest: least duration of the motion
+  /// The plan of kept_path() for the motion, whose path has a duration [s]. shortest: least duration of the motion
   /// [s]. Throws std::invalid_argument as kept_path() does, and unless the scheme is at velocity level and the motion
   /// starts at rest.
-  [[nodiscard]] KeptClock kept_clock(const JointLimits<kDynamic>& limits, AnyBounds bounds, double duration,
-                                     double shortest, const FastestOptions& options) const;
+  [[nodiscard]] std::shared_ptr<const KeptMotion> kept_motion(const JointLimits<kDynamic>& limits, AnyBounds bounds,
+                                                              double duration, double shortest,
+                                                              const FastestOptions& options) const;
 
   /// fastest_clock() and play() of the motion, for joint positions along the path.
   FastestClock clock(const Spline<kDynamic>& joints, const JointLimits<kDynamic>& limits, AnyBounds& bounds,

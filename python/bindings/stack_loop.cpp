@@ -83,17 +83,16 @@ PyFollower StackLoop::follow(const std::vector<std::pair<std::string, const Path
                              const FollowOptions& options) const {
   StackOptions stack{references_.plan_now(), {}, 0.0};
   for (const auto& [name, path] : paths) stack.add(name, *path);
-  double ramp = options.ramp;
+  std::shared_ptr<const KeptMotion> kept;
   if (options.keep_path) {
     const auto keep = [&](const auto& first) {
       using Space = typename std::decay_t<decltype(first)>::Space;
       const State<kDynamic>& start = tracker().state();
       const Motion<Space> motion{nullptr, first, options.scheme, start, TimeGrid<double>(dt_, dt_), &stack};
-      return motion.kept_clock(options.limits, tracker().bounds(), stack.duration, options.shortest, options.fastest);
+      return motion.kept_motion(options.limits, tracker().bounds(), stack.duration, options.shortest, options.fastest);
     };
-    const auto [clock, least] = std::visit(keep, stack.paths.front().path);
-    ramp = std::max(ramp, least);
-    for (TaskPath& each : stack.paths) each.keep(clock, ramp);
+    kept = std::visit(keep, stack.paths.front().path);
+    for (TaskPath& each : stack.paths) each.keep(kept);
   }
   PyFollower result;
   for (const auto& [index, any] : stack.paths) {
@@ -101,8 +100,8 @@ PyFollower StackLoop::follow(const std::vector<std::pair<std::string, const Path
     const Transform<> at = task.frame_of(tracker().tip());
     const auto follow = [&](const auto& path) -> PyFollower::Any {
       using Space = typename std::decay_t<decltype(path)>::Space;
-      if constexpr (std::is_same_v<Space, Pose>) return AnyFollower<Space>(path, at, ramp, options.keep_path);
-      if constexpr (!std::is_same_v<Space, Pose>) return AnyFollower<Space>(path, at.p, ramp, options.keep_path);
+      if constexpr (std::is_same_v<Space, Pose>) return AnyFollower<Space>(path, at, options.ramp, kept);
+      if constexpr (!std::is_same_v<Space, Pose>) return AnyFollower<Space>(path, at.p, options.ramp, kept);
     };
     result.each.emplace_back(task.name, std::visit(follow, any));
   }

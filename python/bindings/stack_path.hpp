@@ -24,8 +24,8 @@ struct TaskPath {
   std::variant<AnyPath<Position<3>>, AnyPath<Pose>> path;
 
   /// Replaces the clock of the path.
-  void keep(const std::shared_ptr<const FastestClock>& clock, double ramp) {
-    std::visit([&](auto& own) { own = std::decay_t<decltype(own)>(TimedPath(own, clock, ramp)); }, path);
+  void keep(const std::shared_ptr<const KeptMotion>& motion) {
+    std::visit([&](auto& own) { own = std::decay_t<decltype(own)>(TimedPath(own, motion)); }, path);
   }
 };
 

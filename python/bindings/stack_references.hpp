@@ -39,8 +39,13 @@ class StackReferences {
   friend Reference<Space> joined(Space, double seconds, const StackReferences& references) noexcept {
     return references.ahead(seconds);
   }
-  friend double most_path_fraction(StackReferences& references, double dt, bool stopping) noexcept {
-    return references.most_fraction(dt, stopping);
+  friend double most_path_fraction(const StackReferences& references, double dt) noexcept {
+    return references.most_fraction(dt);
+  }
+  friend void look_ahead(StackReferences& references, bool stopping, AnyBounds& bounds, const JointVector& q) noexcept {
+    for (const auto& [task, source] : references.sources_) {
+      std::visit([&](auto* each) { look_ahead(*each, stopping, bounds, q); }, source);
+    }
   }
 
   /// The new level k is the old level order[k], with its targets. tip: points of the tasks in the new order.
@@ -52,7 +57,7 @@ class StackReferences {
 
  private:
   void advance(double dt, bool stopping, double fraction) noexcept;
-  [[nodiscard]] double most_fraction(double dt, bool stopping) noexcept;
+  [[nodiscard]] double most_fraction(double dt) const noexcept;
   [[nodiscard]] StackTarget target_of(const StackTask& task) const noexcept;
 
   StackPlan plan_;

@@ -89,10 +89,10 @@ void StackReferences::advance(double dt, bool stopping, double fraction) noexcep
   take(0.0);
 }
 
-double StackReferences::most_fraction(double dt, bool stopping) noexcept {
+double StackReferences::most_fraction(double dt) const noexcept {
   double most = 0.0;
   for (const auto& [task, source] : sources_) {
-    most = std::max(most, std::visit([&](auto* each) { return most_path_fraction(*each, dt, stopping); }, source));
+    most = std::max(most, std::visit([&](auto* each) { return most_path_fraction(*each, dt); }, source));
   }
   return most;
 }

@@ -124,6 +124,20 @@ class Bounds {
     });
   }
 
+  /// The least gap below the range in the posture q, or the range, of bounds that have gaps.
+  template <typename JointVector>
+  [[nodiscard]] auto least_gap(const JointVector& q, typename JointVector::Scalar range) noexcept {
+    const auto take = [&range](auto gap, const auto&) noexcept {
+      if (gap < range) range = gap;
+    };
+    each([&](auto& bound) noexcept {
+      if constexpr (kHas<std::decay_t<decltype(bound)>, bound_member::Gaps, JointVector, decltype(take)>) {
+        if (!bound.empty()) bound.gaps(q, range, take);
+      }
+    });
+    return range;
+  }
+
   /// Largest ratio of a speed to its bound at the joint velocities qd in the posture q, of bounds on speeds.
   template <typename JointVector>
   [[nodiscard]] auto speed_ratio(const JointVector& q, const JointVector& qd) noexcept {

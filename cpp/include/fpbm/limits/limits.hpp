@@ -49,7 +49,8 @@ class Limits {
       const JointBounds<Scalar> joint = usable_bounds<kLevel>(i, bounds_.joint(i), tick);
       bounds_.set(i, joint);
       const bool enveloped = std::isfinite(joint.deceleration);
-      const Scalar least = bounds_jerk(i) ? JointBounds<Scalar>::kOffset * joint.acceleration / joint.jerk : tick / Scalar(2);
+      const Scalar least =
+          bounds_jerk(i) ? JointBounds<Scalar>::kOffset * joint.acceleration / joint.jerk : tick / Scalar(2);
       const Scalar delay = enveloped ? joint.velocity_offset / joint.deceleration : least;
       const Scalar deceleration = enveloped ? joint.deceleration : joint.acceleration;
       upper_.set(i, joint.upper, delay, deceleration);

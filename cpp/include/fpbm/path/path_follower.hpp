@@ -1,9 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
+#include <utility>
 
 #include "fpbm/core/detail/quickest_stop.hpp"
 #include "fpbm/core/detail/validation.hpp"
+#include "fpbm/path/detail/kept_motion.hpp"
 #include "fpbm/path/detail/time_optimal_axis.hpp"
 #include "fpbm/path/path.hpp"
 #include "fpbm/path/reference.hpp"
@@ -30,14 +33,14 @@ class PathFollower {
   using Point = typename Space::template Point<Scalar>;
 
   /// start: origin of the path in the base frame. ramp: duration of a pause from full speed, or of a resumption [s].
-  /// With the default, x′(p) ṙ is at most 2.7 /s times the velocity of the path. keep_path: whether the path is kept.
-  /// Throws std::invalid_argument if ramp is not positive.
-  PathFollower(const Path& path, const Point& start, Scalar ramp = Scalar(0.5), bool keep_path = false)
-      : path_(path),
-        start_(start),
-        keeps_path_(keep_path),
-        clock_{Scalar(1), {Scalar(4) / (Scalar(3) * ramp), Scalar(16) / (Scalar(3) * ramp * ramp)}} {
+  /// With the default, x′(p) ṙ is at most 2.7 /s times the velocity of the path. kept: if given, the path is kept,
+  /// and the ramp is at least its least ramp (kept_path()). Throws std::invalid_argument if ramp is not positive.
+  PathFollower(const Path& path, const Point& start, Scalar ramp = Scalar(0.5),
+               std::shared_ptr<const KeptMotion> kept = nullptr)
+      : path_(path), start_(start), kept_(std::move(kept)), clock_{Scalar(1), {}} {
     validation::require_positive("ramp", ramp);
+    if (kept_) ramp = std::max(ramp, static_cast<Scalar>(kept_->ramp));
+    clock_.stop = {Scalar(4) / (Scalar(3) * ramp), Scalar(16) / (Scalar(3) * ramp * ramp)};
     end_ = Space::template compose<Scalar>(start, path.sample(path.duration()).x);
   }
 
@@ -66,7 +69,10 @@ class PathFollower {
   /// The fraction of the last call of set_speed().
   [[nodiscard]] Scalar speed() const noexcept { return speed_; }
 
-  [[nodiscard]] bool keeps_path() const noexcept { return keeps_path_; }
+  /// The motion along a kept path, or null.
+  [[nodiscard]] const KeptMotion* kept() const noexcept { return kept_.get(); }
+  /// Path time at which the clock stands after pause() [s].
+  [[nodiscard]] Scalar stop_time() const noexcept { return clock_.stop.end_position(now_); }
 
   /// Path time p [s], and whether the path has ended.
   [[nodiscard]] Scalar time() const noexcept { return now_.q; }
@@ -138,7 +144,7 @@ class PathFollower {
   Path path_;
   Point start_;
   Point end_;
-  bool keeps_path_;
+  std::shared_ptr<const KeptMotion> kept_;
   bool paused_ = false;
   bool held_ = false;  ///< Whether a tracker stops the clock.
   TimeOptimalAxis<Scalar> clock_;

@@ -85,7 +85,8 @@ class Tracker {
   /// TargetFilter, which continues. For a stack, pass a source for each task in the order of the stack, or References.
   template <typename... Sources>
   Result tick(Sources&... sources) noexcept {
-    const Result result = advance(references_of(Space{}, state_.dt(), state_.stopping, sources...));
+    (look_ahead(sources, state_.stopping, state_.bounds, state_.tick.joints.q), ...);
+    const Result result = advance(references_of(Space{}, state_.dt(), sources...));
     (advance_source(sources, state_.dt(), state_.stopping, result.path_fraction), ...);
     return result;
   }
@@ -192,7 +193,9 @@ class Tracker {
       result.path_fraction = path_fraction(desired, state_.tick.motion_to(next), state_.most_path_fraction);
     }
     account(state_, desired, std::move(next), damped, result);
-    if (result.path_fraction < Scalar(1)) result.status = worse(result.status, Status::kSlowed);
+    if (result.path_fraction < Scalar(1)) {
+      result.status = worse(result.status, rows.admit(desired.u) ? Status::kSlowed : Status::kBlocked);
+    }
   }
 
   Arm arm_;

@@ -30,7 +30,7 @@ template <typename Space, typename Scalar>
 void advance_source(const Reference<Space, Scalar>&, Scalar, bool, Scalar) noexcept {}
 template <typename Path, typename Scalar>
 void advance_source(PathFollower<Path>& source, Scalar dt, bool stopping, Scalar fraction) noexcept {
-  if (source.keeps_path()) {
+  if (source.kept() != nullptr) {
     source.advance(dt, fraction);
   } else if (!stopping) {
     source.advance(dt);
@@ -41,17 +41,35 @@ void advance_source(TargetFilter<Space, Scalar>& source, Scalar, bool, Scalar) n
   source.advance();
 }
 
+/// Before a tick: stops the clock of a kept path while the arm stops, and before postures in which a gap of the bounds
+/// is smaller than planned, since an obstacle has moved. q: posture of the arm, for its size.
+template <typename Source, typename Bounds_, typename JointVector>
+void look_ahead(Source&, bool, Bounds_&, const JointVector&) noexcept {}
+template <typename Path, typename Bounds_, typename JointVector>
+void look_ahead(PathFollower<Path>& source, bool stopping, Bounds_& bounds, const JointVector&) noexcept {
+  // Obstacles at rest change no gap. Interpolated postures change gaps by less than this [m].
+  constexpr double kTolerance = 1e-3;
+  const KeptMotion* const kept = source.kept();
+  if (kept == nullptr) return;
+  bool blocked = false;
+  if (!bounds.empty()) {
+    using Scalar = typename JointVector::Scalar;
+    const auto t = static_cast<double>(source.stop_time());
+    const auto q = kept->template posture<JointVector::RowsAtCompileTime, Scalar>(t);
+    blocked = static_cast<double>(bounds.least_gap(q, Scalar(KeptMotion::kRange))) < kept->gap(t) - kTolerance;
+  }
+  source.hold(stopping || blocked);
+}
+
 /// Largest fraction of the displacement along a kept path in the coming tick (PathFollower::most_fraction()); 0 for
-/// another source. While the arm stops, the clock of a kept path stops.
-template <typename Scalar, typename Source>
-[[nodiscard]] Scalar most_path_fraction(Source&, Scalar, bool) noexcept {
+/// another source.
+template <typename Source, typename Scalar>
+[[nodiscard]] Scalar most_path_fraction(const Source&, Scalar) noexcept {
   return Scalar(0);
 }
-template <typename Scalar, typename Path>
-[[nodiscard]] Scalar most_path_fraction(PathFollower<Path>& source, Scalar dt, bool stopping) noexcept {
-  if (!source.keeps_path()) return Scalar(0);
-  source.hold(stopping);
-  return source.most_fraction(dt);
+template <typename Path, typename Scalar>
+[[nodiscard]] Scalar most_path_fraction(const PathFollower<Path>& source, Scalar dt) noexcept {
+  return source.kept() != nullptr ? source.most_fraction(dt) : Scalar(0);
 }
 
 /// Reference of a single task from its source. The overload for StackSpace has a source for each task.
@@ -62,9 +80,8 @@ template <typename Space, typename Scalar, typename Source, typename = std::enab
 
 /// References of a tick of dt [s] from its sources.
 template <typename Space, typename Scalar, typename... Sources>
-[[nodiscard]] TickReferences<Space, Scalar> references_of(Space, Scalar dt, bool stopping,
-                                                          Sources&... sources) noexcept {
-  const Scalar most = std::max({most_path_fraction(sources, dt, stopping)...});
+[[nodiscard]] TickReferences<Space, Scalar> references_of(Space, Scalar dt, const Sources&... sources) noexcept {
+  const Scalar most = std::max({most_path_fraction(sources, dt)...});
   auto references =
       TickReferences<Space, Scalar>::of([&](Scalar t) noexcept { return joined(Space{}, t, sources...); }, dt);
   references.most_path_fraction = most;

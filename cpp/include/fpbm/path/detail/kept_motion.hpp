@@ -1,0 +1,52 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "fpbm/core/types.hpp"
+#include "fpbm/path/fastest_clock.hpp"
+
+namespace fpbm {
+
+/// Plan of a motion along a path that a PathFollower keeps (kept_path()).
+struct KeptMotion {
+  FastestClock clock;
+  double ramp;               ///< Least ramp of the follower with which no change of its rate exceeds a bound [s].
+  double step;               ///< Time between postures [s].
+  Eigen::Index dof;          ///< Number of joints.
+  std::vector<double> q;     ///< Postures, one after another [rad] or [m].
+  std::vector<double> gaps;  ///< Least gap of the bounds (Bounds::least_gap()) in each posture, at most kRange [m].
+
+  /// Gaps above this range have no effect [m].
+  static constexpr double kRange = 0.02;
+
+  /// The posture at t [s], interpolated linearly.
+  template <int N, typename Scalar>
+  [[nodiscard]] Vector<N, Scalar> posture(double t) const noexcept {
+    const auto [i, fraction] = place(t);
+    const double* const from = &q[i * static_cast<std::size_t>(dof)];
+    Vector<N, Scalar> result(dof);
+    for (Eigen::Index j = 0; j < dof; ++j) {
+      result(j) = static_cast<Scalar>(from[j] + fraction * (from[j + dof] - from[j]));
+    }
+    return result;
+  }
+
+  /// The least planned gap near t [s].
+  [[nodiscard]] double gap(double t) const noexcept {
+    const std::size_t i = place(t).first;
+    return std::min(gaps[i], gaps[i + 1]);
+  }
+
+ private:
+  /// Index of the posture before t, and the fraction of the step after this posture.
+  [[nodiscard]] std::pair<std::size_t, double> place(double t) const noexcept {
+    const double steps = std::clamp(t / step, 0.0, static_cast<double>(gaps.size() - 1));
+    const std::size_t i = std::min(static_cast<std::size_t>(steps), gaps.size() - 2);
+    return {i, steps - static_cast<double>(i)};
+  }
+};
+
+}  // namespace fpbm
