@@ -124,6 +124,19 @@ nearest rotation. Raises ParameterError if x has another shape than x0.)")
           R"(Sets a desired velocity [m/s, rad/s] until the timeout, within the bounds.
 
 v has shape (m,), linear rows first, along the base frame's axes. Returns whether v is accepted, as push.)")
+      .def(
+          "set_speed",
+          [](PyTargetFilter& self, double fraction) {
+            if (!std::visit([&](auto& filter) { return filter.set_speed(fraction); }, self.any)) {
+              validation::fail("fraction", fraction, "in (0, 1]");
+            }
+          },
+          py::arg("fraction"),
+          R"(Reduces the bounds on velocity to a fraction in (0, 1] of the given bounds, until the next call.
+
+A faster reference decelerates within the bounds on acceleration and jerk. A faster target is followed with a lag.)")
+      .def_property_readonly("speed", visit([](const auto& filter) { return filter.speed(); }),
+                             "Fraction of the bounds on velocity that set_speed has set.")
       .def_property_readonly("x", visit([](const auto& filter) { return array_of(filter.reference().x); }),
                              "Reference at the start of the next tick, shape (2,), (3,) or (4, 4) [m, rad].")
       .def_property_readonly("xd", visit([](const auto& filter) { return array_of(filter.reference().xd); }),
@@ -138,7 +151,7 @@ v has shape (m,), linear rows first, along the base frame's axes. Returns whethe
           [](PyTargetFilter& self, const ArrayLike& x) {
             std::visit([&](auto& filter) { filter.reset(point<decltype(space_of(filter))>(x, "x")); }, self.any);
           },
-          py::arg("x"), "Restarts at rest at x; an estimated clock is discarded.");
+          py::arg("x"), "Restarts at rest at x, with the same speed; an estimated clock is discarded.");
 }
 
 }  // namespace fpbm::bindings

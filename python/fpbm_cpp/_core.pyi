@@ -554,7 +554,18 @@ class TargetFilter:
         """
     def reset(self, x: numpy.typing.ArrayLike) -> None:
         """
-        Restarts at rest at x; an estimated clock is discarded.
+        Restarts at rest at x, with the same speed; an estimated clock is discarded.
+        """
+    def set_speed(self, fraction: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        """
+        Reduces the bounds on velocity to a fraction in (0, 1] of the given bounds, until the next call.
+
+        A faster reference decelerates within the bounds on acceleration and jerk. A faster target is followed with a lag.
+        """
+    @property
+    def speed(self) -> float:
+        """
+        Fraction of the bounds on velocity that set_speed has set.
         """
     @property
     def x(self) -> numpy.typing.NDArray[numpy.float64]:

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <diagnostic_msgs/msg/diagnostic_array.hpp>
 #include <limits>
+#include <std_msgs/msg/float64.hpp>
 #include <string>
 #include <two_arms.hpp>
 
@@ -107,6 +108,33 @@ void both_hands(TwoArms& robot) {
   check(std::abs(rise + 0.05 * 1.15) < 0.004, "right hand: displacement at a twist down [m]", rise);
 }
 
+/// The speed applies to the targets of all tasks.
+void slow_hands(TwoArms& robot) {
+  std_msgs::msg::Float64 speed;
+  speed.data = 0.2;
+  robot.hear("~/speed", speed);
+  const Transform<> start[] = {robot.tip("left"), robot.tip("right")};
+  TwistStamped twist;
+  twist.header.frame_id = "table";
+  twist.twist.linear.z = 0.3;  // Above 0.2 times the bound of 0.5 m/s.
+  double fastest[] = {0.0, 0.0};
+  for (int i = 0; i < 500; ++i) {
+    const Transform<> before[] = {robot.tip("left"), robot.tip("right")};
+    if (i % 50 == 0) robot.hear("~/left/target_twist", twist);
+    if (i % 50 == 0) robot.hear("~/right/target_twist", twist);
+    robot.tick();
+    fastest[0] = std::max(fastest[0], 1e3 * (robot.tip("left").p - before[0].p).cwiseAbs().maxCoeff());
+    fastest[1] = std::max(fastest[1], 1e3 * (robot.tip("right").p - before[1].p).cwiseAbs().maxCoeff());
+  }
+  check(0.09 < fastest[0] && fastest[0] < 0.1001, "both hands, speed 0.2: velocity of the left [m/s]", fastest[0]);
+  check(0.09 < fastest[1] && fastest[1] < 0.1001, "both hands, speed 0.2: velocity of the right [m/s]", fastest[1]);
+  speed.data = 1.0;
+  robot.hear("~/speed", speed);
+  robot.hear("~/left/target_pose", in_table(start[0]));
+  robot.hear("~/right/target_pose", in_table(start[1]));
+  robot.tick(3000);
+}
+
 /// Each task has its own frame, stamps and counts.
 void refused(TwoArms& robot) {
   robot.tick(5000);  // Both arms stop.
@@ -186,6 +214,7 @@ void two_arms() {
   check(robot.load() && robot.activate(), "two arms: configured, activated", 1);
   one_hand(robot);
   both_hands(robot);
+  slow_hands(robot);
   refused(robot);
   within_limits(robot, "two arms");
   again();

@@ -13,6 +13,7 @@
 #include "fpbm/scheme/schemes.hpp"
 #include "support/compiled_tracker.hpp"
 #include "support/random.hpp"
+#include "support/watched_filter.hpp"
 
 /// The reference of a filter keeps every bound for all messages, and arrives at the target.
 namespace fpbm::test::target_filter_laws {
@@ -21,105 +22,9 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr TargetBounds<> kBounds{0.5, 3.0, 100.0, 1.5, 8.0, 300.0};
 
-template <typename Space, typename Scalar>
-struct Kind {
-  using S = Space;
-  using T = Scalar;
-};
-
-/// A random point of a space, within several metres and usually within several radians.
-template <typename Space, typename Scalar>
-typename Space::template Point<Scalar> random_point(Random& random, double size) {
-  if constexpr (std::is_same_v<Space, Pose>) {
-    const Vector<3, Scalar> turn = random.uniform(3, -2.0, 2.0).cast<Scalar>();
-    return {random.uniform(3, -size, size).cast<Scalar>(), rotation(turn)};
-  } else {
-    return random.uniform(Space::kRows, -size, size).template cast<Scalar>();
-  }
-}
-
-template <typename Space, typename Scalar>
-TargetBounds<Scalar> random_bounds(Random& random) {
-  const auto power = [&](double low, double high) {
-    return static_cast<Scalar>(std::pow(10.0, random.uniform(low, high)));
-  };
-  TargetBounds<Scalar> bounds;
-  for (auto [v, a, j] : {std::tie(bounds.velocity, bounds.acceleration, bounds.jerk),
-                         std::tie(bounds.angular_velocity, bounds.angular_acceleration, bounds.angular_jerk)}) {
-    v = power(-1.0, 0.5);
-    a = power(0.0, 1.5);
-    j = a * power(0.5, 2.7);
-  }
-  return bounds;
-}
-
-/// Advances tick by tick, and checks the bounds on velocity, acceleration and jerk, by the values of the reference and
-/// by the displacement of each tick.
-template <typename Space, typename Scalar>
-class Watched {
- public:
-  using Filter = TargetFilter<Space, Scalar>;
-
-  Watched(const typename Filter::Point& x0, const TargetBounds<Scalar>& bounds,
-          const TargetFilterOptions<Scalar>& options = {})
-      : filter(x0, bounds, options), bounds_(bounds), dt_(options.dt) {}
-
-  void advance() {
-    const Reference<Space, Scalar> before = filter.reference();
-    filter.advance();
-    const Reference<Space, Scalar>& now = filter.reference();
-    const auto displacement = Space::template difference<Scalar>(now.x, before.x);
-    constexpr Scalar kEpsilon = std::numeric_limits<Scalar>::epsilon();
-    for (int i = 0; i < Space::kRows; ++i) {
-      const bool turns = i >= Space::kRows - Space::kTurns;
-      const Scalar V = turns ? bounds_.angular_velocity : bounds_.velocity;
-      const Scalar A = turns ? bounds_.angular_acceleration : bounds_.acceleration;
-      const Scalar J = turns ? bounds_.angular_jerk : bounds_.jerk;
-      ASSERT_LE(std::abs(now.xd(i)), V * (1 + 256 * kEpsilon)) << i;
-      ASSERT_LE(std::abs(now.xdd(i)), A * (1 + 64 * kEpsilon)) << i;
-      ASSERT_LE(std::abs(now.xdd(i) - before.xdd(i)), J * dt_ * (1 + 64 * kEpsilon) + 64 * kEpsilon * A) << i;
-      ASSERT_NEAR(now.xd(i) - before.xd(i), dt_ * (now.xdd(i) + before.xdd(i)) / 2,
-                  J * dt_ * dt_ / 4 * Scalar(1.001) + 64 * kEpsilon * V)
-          << i;
-      const Scalar size = extent(now.x) + extent(before.x);
-      ASSERT_NEAR(displacement(i), dt_ * (now.xd(i) + before.xd(i)) / 2,
-                  J * dt_ * dt_ * dt_ / 12 * Scalar(1.001) + 64 * kEpsilon * (size + V))
-          << i;
-    }
-  }
-
-  /// Advances until the reference rests at a point, bitwise (an angle in the plane: up to round-off). Returns the
-  /// number of ticks.
-  int reach(const typename Filter::Point& x, int most) {
-    for (int k = 0; k < most; ++k) {
-      advance();
-      if (::testing::Test::HasFatalFailure()) return most;
-      if (filter.reference().xd.isZero(0) && filter.reference().xdd.isZero(0) && at(x)) return k + 1;
-    }
-    return most;
-  }
-
-  [[nodiscard]] bool at(const typename Filter::Point& x) const {
-    if constexpr (std::is_same_v<Space, Pose>) {
-      return filter.reference().x.p == x.p && filter.reference().x.R == x.R;
-    } else {
-      return Space::template difference<Scalar>(filter.reference().x, x).cwiseAbs().maxCoeff() <=
-             Scalar(4) * std::numeric_limits<Scalar>::epsilon() * extent(x);
-    }
-  }
-
-  Filter filter;
-
- private:
-  TargetBounds<Scalar> bounds_;
-  Scalar dt_;
-};
-
 template <typename Kind>
 class TargetFilters : public ::testing::Test {};
-using Kinds = ::testing::Types<Kind<Position<2>, double>, Kind<Position<3>, float>, Kind<PlanarPose, double>,
-                               Kind<Pose, double>, Kind<Pose, float>>;
-TYPED_TEST_SUITE(TargetFilters, Kinds, );
+TYPED_TEST_SUITE(TargetFilters, FilterKinds, );
 
 /// From rest and from any motion, under any bounds, for all previous targets.
 TYPED_TEST(TargetFilters, stop_on_the_last_target) {
@@ -129,7 +34,7 @@ TYPED_TEST(TargetFilters, stop_on_the_last_target) {
   for (int i = 0; i < trials(60); ++i) {
     SCOPED_TRACE("trial " + std::to_string(i));
     const auto bounds = random_bounds<Space, Scalar>(random);
-    Watched<Space, Scalar> watched(random_point<Space, Scalar>(random, 1.0), bounds);
+    WatchedFilter<Space, Scalar> watched(random_point<Space, Scalar>(random, 1.0), bounds);
     auto x = random_point<Space, Scalar>(random, 1.0);
     for (int target = 0; target < 5; ++target) {
       x = random_point<Space, Scalar>(random, std::pow(10.0, random.uniform(-5.0, 0.0)));
@@ -155,8 +60,8 @@ TYPED_TEST(TargetFilters, keep_their_bounds_for_any_targets) {
     SCOPED_TRACE("trial " + std::to_string(i));
     TargetFilterOptions<Scalar> options;
     if (i % 3 == 0) options.start = 100.0;
-    Watched<Space, Scalar> watched(random_point<Space, Scalar>(random, 1.0), random_bounds<Space, Scalar>(random),
-                                   options);
+    WatchedFilter<Space, Scalar> watched(random_point<Space, Scalar>(random, 1.0), random_bounds<Space, Scalar>(random),
+                                         options);
     double stamp = 100.0;
     for (int k = 0; k < 3000; ++k) {
       stamp += 1e-3;
@@ -203,8 +108,8 @@ TYPED_TEST(TargetFilters, do_not_lag_behind_a_stream) {
     const double epoch = i % 2 == 0 ? 5000.0 : 0.0;
     if (i % 2 != 0) options.start = 0.0;
     const auto x0 = random_point<Space, Scalar>(random, 1.0);
-    Watched<Space, Scalar> watched(x0, {Scalar(0.5), Scalar(3), Scalar(100), Scalar(1.5), Scalar(8), Scalar(300)},
-                                   options);
+    WatchedFilter<Space, Scalar> watched(x0, {Scalar(0.5), Scalar(3), Scalar(100), Scalar(1.5), Scalar(8), Scalar(300)},
+                                         options);
     Twist v = random.uniform(Space::kRows, -0.4, 0.4).template cast<Scalar>();
     const auto target = [&](double t) { return Space::template displace<Scalar>(x0, static_cast<Scalar>(t) * v); };
     const auto lag = [&](double t) {
@@ -250,7 +155,7 @@ TYPED_TEST(TargetFilters, move_at_a_velocity_until_the_timeout) {
   using Twist = Vector<Space::kRows, Scalar>;
   Random random(44);
   const auto x0 = random_point<Space, Scalar>(random, 1.0);
-  Watched<Space, Scalar> watched(x0, {Scalar(0.5), Scalar(3), Scalar(100), Scalar(1.5), Scalar(8), Scalar(300)});
+  WatchedFilter<Space, Scalar> watched(x0, {Scalar(0.5), Scalar(3), Scalar(100), Scalar(1.5), Scalar(8), Scalar(300)});
   Twist v = Twist::Constant(Scalar(0.3));
   v(0) = Scalar(-9);
   for (int k = 0; k < 1000; ++k) {
@@ -371,7 +276,7 @@ TEST(TargetFilter, does_not_overshoot) {
   Random random(47);
   for (int i = 0; i < trials(300); ++i) {
     const auto bounds = random_bounds<Position<2>, double>(random);
-    Watched<Position<2>, double> watched({0.0, 0.0}, bounds);
+    WatchedFilter<Position<2>, double> watched({0.0, 0.0}, bounds);
     const double x = std::pow(10.0, random.uniform(-8.0, 0.0));
     watched.filter.push({x, -x});
     std::vector<double> path{0.0, 0.0, 0.0};
@@ -389,7 +294,7 @@ TEST(TargetFilter, does_not_overshoot) {
 
 /// Half a turn and more: each rotation is in the shorter direction.
 TEST(TargetFilter, turns_in_the_shorter_direction) {
-  Watched<PlanarPose, double> planar({0.0, 0.0, 3.0}, kBounds);
+  WatchedFilter<PlanarPose, double> planar({0.0, 0.0, 3.0}, kBounds);
   planar.filter.push({0.0, 0.0, -3.0});
   for (int k = 0; k < 1000; ++k) {
     ASSERT_NO_FATAL_FAILURE(planar.advance());
@@ -397,7 +302,7 @@ TEST(TargetFilter, turns_in_the_shorter_direction) {
   }
   EXPECT_NEAR(planar.filter.reference().x(2), kTwoPi - 3.0, 1e-15);
 
-  Watched<Pose, double> spatial({}, kBounds);
+  WatchedFilter<Pose, double> spatial({}, kBounds);
   const Transform<> turned{Vector<3>::Zero(), rotation(Vector<3>(0.0, kTwoPi / 2, 0.0))};
   spatial.filter.push(turned);
   EXPECT_LT(spatial.reach(turned, 3000), 3000);

@@ -56,6 +56,7 @@ def shared():
 @pytest.fixture
 def servo(shared):
     shared.scheme = fpbm(4)
+    shared._speed.value = 100
     shared.restart()
     return shared
 
@@ -138,6 +139,28 @@ def test_the_page_chooses_schemes(servo):
     controls._reset(fpbm(4))
     wait_until(lambda: "rejected" not in readout(servo))
     assert servo.scheme == fpbm(4)
+
+
+def test_the_slider_sets_the_speed(servo):
+    assert (servo._speed.min, servo._speed.max, servo._speed.value, servo._loop.speed) == (5, 100, 100, 1.0)
+    servo._speed.value = 5  # Assignment calls the functions that the slider of the page calls.
+    assert servo._loop.speed == 0.05
+    servo.target = [1.0, 2.0]
+    wait_until(lambda: servo._loop.time > 1.0)
+    before, moment = servo.tip, servo._loop.time
+    wait_until(lambda: servo._loop.time > moment + 1.0)
+    displacement = np.abs(servo.tip - before).max()
+    assert (
+        0.1 < displacement < 0.05 * 4 * (servo._loop.time - moment + 0.1)
+    )  # The bound is the length of the arm per second.
+    servo._speed.value = 100
+    wait_until(lambda: np.abs(servo.tip - [1.0, 2.0]).max() < 1e-3)
+    slow = fp.TargetFilter(PLANAR.forward(BENT), velocity=1, acceleration=5, jerk=100)
+    slow.set_speed(0.3)
+    with a_servo(targets=slow) as other:
+        assert other._speed.value == 30
+    with a_stack_servo(fp.Stack(fp.OrientationTask())) as other:
+        assert not other._speed.visible  # Without a filter.
 
 
 def test_missing_bounds_are_reported():
@@ -429,6 +452,8 @@ def test_dragged_in_a_browser(page, servo):
     t, *shares = page.evaluate(f"{drawn}.map(each => Math.max(...each.filter(Number.isFinite)))")
     assert t == pytest.approx(servo._loop.time, abs=3.0)
     assert all(0 < share <= 100.001 for share in shares)
+    page.get_by_role("slider").first.press("Home")
+    eventually(page, lambda: servo._loop.speed == 0.05)
     page.get_by_role("button", name="stop").click()
     page.get_by_text("stopped: the arm is at rest").wait_for()
     page.get_by_role("button", name="continue").click()

@@ -265,6 +265,30 @@ def test_a_target_filter_bounds_the_speed_of_the_tip():
     assert np.abs(np.diff(tips, axis=0)).max() / FRAME < 0.021
 
 
+@pytest.mark.parametrize(("which", "task"), KINDS)
+def test_the_speed_of_the_handle_is_reduced_in_motion(which, task):
+    loop, clock = a_loop(which, task)
+    q0, target = loop.q, moved(loop.target, [-0.3, 0.3])
+    assert loop.speed == 1.0
+    loop.push(target)
+    ticks = play(loop, clock, 0.3)
+    loop.set_speed(0.05)
+    assert loop.speed == 0.05
+    ticks += play(loop, clock, 0.5)
+    before = np.array(loop.tip)
+    ticks += play(loop, clock, 0.5)
+    assert (
+        0 < np.abs(np.array(loop.tip) - before).max() < 0.05 * 4 * 0.55
+    )  # The bound is the length of the arm per second.
+    loop.restart()
+    assert loop.speed == 0.05
+    loop.set_speed(1.0)
+    loop.push(target)
+    play(loop, clock, 8)
+    np.testing.assert_allclose(loop.tip, target, atol=1e-6)
+    kept(loop, q0, ticks)
+
+
 def post(x=2.2, y=0.3):
     return fp.Capsule(0, [x, y, -1], [x, y, 1], 0.1, "post")
 

@@ -194,6 +194,33 @@ def test_a_twist_holds_until_the_timeout():
     assert single == pytest.approx(0.2 * (0.08 + (0.2 / 3 + 3 / 100) / 2), abs=0.2 * DT * 1.01)
 
 
+def test_the_speed_reduces_the_bounds_on_velocity():
+    """Also in the middle of a motion: the deceleration and the return to full speed keep all bounds."""
+    start, target = np.eye(4), np.eye(4)
+    target[:3, 3], target[:3, :3] = [1.0, -0.8, 0.5], fp.rotation([2.0, 0, 0])
+    target_filter = fp.TargetFilter(start, **LINEAR, **ANGULAR)
+    assert target_filter.speed == 1
+    target_filter.push(target)
+    seen = [tuple(moved(target_filter, 500))]
+    for fraction, angular in [(0.2, 0.3), (1.0, 1.5)]:
+        target_filter.set_speed(fraction)
+        assert target_filter.speed == fraction
+        seen.append(tuple(moved(target_filter, 400)))
+        fastest = np.abs(seen[-1][1][-1])
+        assert fastest[:3].max() == pytest.approx(fraction * LINEAR["velocity"], rel=1e-12)
+        assert fastest[3:].max() == pytest.approx(angular, rel=1e-12)
+    seen.append(tuple(moved(target_filter, 5000)))
+    x, xd, xdd = (np.concatenate([states[:-1] for states in column]) for column in zip(*seen))
+    assert_within(x[:, :3, 3], xd[:, :3], xdd[:, :3], **LINEAR)
+    assert np.abs(xdd[:, 3:]).max() <= ANGULAR["angular_acceleration"] * (1 + 1e-12)
+    assert np.abs(np.diff(xdd[:, 3:], axis=0)).max() <= ANGULAR["angular_jerk"] * DT * (1 + 1e-9)
+    np.testing.assert_array_equal(x[-1], target)
+    for wrong in (0.0, -0.5, 1.01, np.nan, np.inf):
+        with pytest.raises(fp.ParameterError, match=r"fraction = .*: must be in \(0, 1\]"):
+            target_filter.set_speed(wrong)
+    assert target_filter.speed == 1
+
+
 def test_a_tracker_follows_the_filter(arm, q0):
     scheme = fp.FPBM(0.6, np.ones(4), 10, 25, null_damping=2)
     tracker = fp.Tracker(arm, scheme, q0)

@@ -99,9 +99,9 @@ def servo(
 
     The positions of the handle, 20 per second, are the input of targets, a TargetFilter with its own bounds. The
     default bounds depend on the length L of the arm: L per second, 5 L/s^2, 100 L/s^3 and 2 rad/s, 10 rad/s^2,
-    200 rad/s^3. task, dt, limits and bounds are as for Tracker; urdf, host and port are as for view().
-    Shapes of the clearance are translucent, with a line between the nearest shapes. Arrows move obstacles that are
-    capsules or boxes, which follow the arrows at 0.3 m/s.
+    200 rad/s^3. A slider reduces the bounds on velocity to 5 to 100 %. task, dt, limits and bounds are as for Tracker;
+    urdf, host and port are as for view(). Shapes of the clearance are translucent, with a line between the nearest
+    shapes. Arrows move obstacles that are capsules or boxes, which follow the arrows at 0.3 m/s.
 
     A stack replaces task; a Robot needs a stack. Each frame task has a handle with the name of the task, unless the
     task is relative to another frame: arrows for a position, arcs for an orientation or an axis. The z axis of the

@@ -156,6 +156,16 @@ class ServoLoop:
         with self._lock:
             self._obstacles.drag(name, np.array(displacement, dtype=float))
 
+    @property
+    def speed(self) -> float | None:
+        """Smallest fraction of their bounds on velocity that the filters use; None without a filter."""
+        return self._targets.speed
+
+    def set_speed(self, fraction: float) -> None:
+        """Reduce the bounds of all filters on velocity to a fraction in (0, 1]. Raises ParameterError."""
+        with self._lock:
+            self._targets.set_speed(fraction)
+
     def stop(self) -> None:
         """Bring every joint to rest as fast as the limits allow."""
         with self._lock:

@@ -22,6 +22,8 @@ from .page import Page
 from .readout import LiveReadout, StripChart
 from .scene import Meshes
 
+SLOWEST = 5  # Smallest value of the slider of the speed [%].
+
 
 class Servo(Page):
     """A page in the browser with an arm whose tip follows a handle in real time, within the joint limits.
@@ -54,12 +56,23 @@ class Servo(Page):
             self._button = gui.add_button("stop", color="red", icon=Icon.HAND_STOP, hint="Stop the arm, or continue")
             start = gui.add_button("back to start", color="gray", hint="Move arm and handles to their start")
             other = gui.add_button("other posture", color="gray", hint="Jump to another posture with the same tip")
+            speed = self._loop.speed
+            self._speed = gui.add_slider(
+                "speed [%]",
+                min=SLOWEST,
+                max=100,
+                step=1,
+                initial_value=max(round(100 * (speed or 1.0)), SLOWEST),
+                visible=speed is not None,
+                hint="Largest velocity of positions and poses that follow a handle, relative to their bounds",
+            )
             self._chart = StripChart(gui, self._loop)
             self._controls = Controls(gui, arm, scheme, self._on_change, gains=self._loop.stack is None)
             self._scene = LiveScene(self._server, self._loop, meshes)
             self._button.on_click(lambda _: self.resume() if self._loop.stopped else self.stop())
             start.on_click(lambda _: self.restart())
             other.on_click(lambda _: self.change_posture())
+            self._speed.on_update(lambda _: self._on_speed())
             self._draw()
         self._start(self._step, open_browser)
 
@@ -148,6 +161,10 @@ class Servo(Page):
                 self._readout.refuse("")
             except ValueError as error:
                 self._readout.refuse(str(error))
+
+    def _on_speed(self) -> None:
+        with self._lock:  # The last call sets the newest value.
+            self._loop.set_speed(self._speed.value / 100)
 
     def _step(self) -> None:
         self._loop.advance()

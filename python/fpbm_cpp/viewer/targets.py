@@ -51,6 +51,16 @@ class Targets:
         """References for a tracker."""
         return self._plain({**self._x, **self._filters})
 
+    @property
+    def speed(self) -> float | None:
+        """Smallest fraction of their bounds on velocity that the filters use; None without a filter."""
+        return min((each.speed for each in self._filters.values()), default=None)
+
+    def set_speed(self, fraction: float) -> None:
+        """Reduce the bounds of all filters on velocity to a fraction in (0, 1]. Raises ParameterError."""
+        for each in self._filters.values():
+            each.set_speed(fraction)
+
     def of(self, task: str) -> Array:
         """The newest target of the task of that name. Raises ParameterError."""
         return self._x[self._known(task).name].copy()

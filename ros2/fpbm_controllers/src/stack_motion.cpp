@@ -102,6 +102,10 @@ class StackMotion final : public Motion {
 
   bool push(std::size_t task, const Target& target) noexcept override { return push_to(filters_[task], target); }
 
+  void set_speed(double fraction) noexcept override {
+    for (auto& filter : filters_) (void)filter.set_speed(fraction);
+  }
+
   void tick(Report& report) noexcept override {
     const auto references =
         fpbm::TickReferences<Space>::of([this](double t) noexcept { return ahead(t); }, options_.dt);

@@ -154,7 +154,7 @@ return_type TargetController::update(const rclcpp::Time& time, const rclcpp::Dur
     ++report_.early;
     return return_type::OK;
   }
-  take_targets();
+  take_messages();
   const bool read = !measure();
   compare();
   if (locked_for_ == 0) motion_->tick(report_);
@@ -172,7 +172,11 @@ return_type TargetController::update(const rclcpp::Time& time, const rclcpp::Dur
   return return_type::OK;
 }
 
-void TargetController::take_targets() noexcept {
+void TargetController::take_messages() noexcept {
+  if (const std::optional<double> speed = topics_->exchange().speed.try_get()) {
+    motion_->set_speed(*speed);
+    report_.speed = *speed;
+  }
   for (std::size_t k = 0; k < tasks_.size(); ++k) {
     const std::optional<Target> target = topics_->exchange().tasks[k].target.try_get();
     if (!target || target->count == seen_[k]) continue;

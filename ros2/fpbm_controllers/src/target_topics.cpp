@@ -8,6 +8,12 @@ namespace {
 
 using TipPublisher = rclcpp::Publisher<geometry_msgs::msg::PoseStamped>;
 
+/// Best effort, because a reliable subscription receives no messages of a best-effort publisher, such as a sensor. Only
+/// the newest message is kept.
+[[nodiscard]] rclcpp::QoS quality() {
+  return rclcpp::QoS(1).best_effort();
+}
+
 void publish_tips(const Report& report, const Exchange& exchange,
                   const std::vector<std::shared_ptr<TipPublisher>>& publishers) {
   for (std::size_t k = 0; k < publishers.size(); ++k) {
@@ -69,6 +75,17 @@ TargetTopics::TargetTopics(rclcpp_lifecycle::LifecycleNode& node, const target_c
     tips.push_back(
         node.create_publisher<geometry_msgs::msg::PoseStamped>(task.topic("tip_pose"), rclcpp::SystemDefaultsQoS()));
   }
+  speed_ = node.create_subscription<std_msgs::msg::Float64>(
+      "~/speed", quality(),
+      [exchange = exchange_, logger = node.get_logger(),
+       clock = node.get_clock()](const std_msgs::msg::Float64& message) {
+        if (message.data > 0.0 && message.data <= 1.0) {
+          exchange->speed.set(message.data);
+          return;
+        }
+        RCLCPP_WARN_THROTTLE(logger, *clock, 1000, "speed dropped: it is %s, and must be in (0, 1]",
+                             std::to_string(message.data).c_str());
+      });
   using Diagnostics = rclcpp::Publisher<diagnostic_msgs::msg::DiagnosticArray>;
   const std::shared_ptr<Diagnostics> diagnostics =
       node.create_publisher<diagnostic_msgs::msg::DiagnosticArray>("/diagnostics", rclcpp::SystemDefaultsQoS());
@@ -85,13 +102,11 @@ TargetTopics::TargetTopics(rclcpp_lifecycle::LifecycleNode& node, const target_c
                                               });
 }
 
-/// Best effort, because a reliable subscription receives no messages of a best-effort publisher, such as a sensor. Only
-/// the newest message is kept.
 template <typename Message>
 std::shared_ptr<rclcpp::Subscription<Message>> TargetTopics::listen(rclcpp_lifecycle::LifecycleNode& node,
                                                                     const std::string& topic, std::size_t task) const {
   return node.create_subscription<Message>(
-      topic, rclcpp::QoS(1).best_effort(),
+      topic, quality(),
       [exchange = exchange_, task, logger = node.get_logger(), clock = node.get_clock()](const Message& message) {
         TargetExchange& own = exchange->tasks[task];
         const std::string of = of_task(exchange->names[task]);

@@ -45,6 +45,8 @@ class TipMotion final : public Motion {
 
   bool push(std::size_t, const Target& target) noexcept override { return push_to(filter_, target); }
 
+  void set_speed(double fraction) noexcept override { (void)filter_.set_speed(fraction); }
+
   void tick(Report& report) noexcept override {
     const auto tick = tracker_->tick(filter_);
     report.status = tick.status;

@@ -74,6 +74,17 @@ class TargetFilter {
     return true;
   }
 
+  /// Reduces the bounds on velocity to a fraction of the bounds of the constructor, until the next call. A faster
+  /// reference decelerates within the bounds on acceleration and jerk. A faster target is followed with a lag. If the
+  /// fraction is not in (0, 1], returns false without an effect.
+  bool set_speed(Scalar fraction) noexcept {
+    if (!(fraction > Scalar(0) && fraction <= Scalar(1))) return false;
+    axes_.set_speed(fraction);
+    return true;
+  }
+  /// The fraction of the last call of set_speed().
+  [[nodiscard]] Scalar speed() const noexcept { return axes_.speed(); }
+
   /// The reference at the start of the coming tick.
   [[nodiscard]] const Reference<Space, Scalar>& reference() const noexcept { return reference_; }
 
@@ -93,7 +104,8 @@ class TargetFilter {
     settle();
   }
 
-  /// Restarts at rest at x, and forgets an estimated clock. Returns false, without effect, if x is not a point.
+  /// Restarts at rest at x, with the same speed, and forgets an estimated clock. Returns false, without effect, if x is
+  /// not a point.
   bool reset(const Point& x) noexcept {
     if (!is_point(x)) return false;
     reference_ = Reference<Space, Scalar>::hold(orthonormalised(x));
@@ -114,14 +126,15 @@ class TargetFilter {
   [[nodiscard]] Step step(Scalar seconds) const noexcept {
     const auto& [x, xd, xdd] = reference_;
     if (free_) {
-      const auto motion = axes_.change(xd, xdd, wanted_, seconds);
+      const auto motion = axes_.change(xd, xdd, axes_.within_bounds(wanted_), seconds);
       return {{compensation_.displace(x, motion.displacement), motion.xd, motion.xdd}, motion.displacement};
     }
     const Twist error = compensation_.difference(target_.at(age()), x);
-    const Twist velocity = axes_.within_bounds(clock_.rate() * target_.velocity());
+    const Twist target_velocity = clock_.rate() * target_.velocity();
+    const Twist velocity = axes_.within_bounds(target_velocity);
     const auto motion = axes_.approach(xd, xdd, error, velocity, extent(x), seconds, dt_);
     // Exactly the target, except for an angle in the plane, which may differ by full turns.
-    const bool exact = motion.arrived && Space::kTurns != 1;
+    const bool exact = motion.arrived && velocity == target_velocity && Space::kTurns != 1;
     return {{exact ? target_.at(age() + clock_.rate() * seconds) : compensation_.displace(x, motion.displacement),
              motion.xd, motion.xdd},
             motion.displacement};
@@ -135,7 +148,7 @@ class TargetFilter {
   }
   void take(const Twist& v) noexcept {
     free_ = true;
-    wanted_ = axes_.within_bounds(v);
+    wanted_ = v;
     settle();
   }
 
@@ -153,7 +166,7 @@ class TargetFilter {
     Twist stopping_displacement;
     bool in_step = !velocity.isZero(Scalar(0));
     for (int i = 0; i < Space::kRows; ++i) {
-      const auto& stop = axes_(i).stop;
+      const auto stop = axes_(i).stop;
       stopping_displacement(i) = std::copysign(stop.stopping_distance(std::abs(velocity(i))), velocity(i));
       const AxisState<Scalar> state{-error(i), reference_.xd(i) - velocity(i), reference_.xdd(i)};
       const Scalar change = stop.jerk * dt_ * dt_;

@@ -74,6 +74,8 @@ class Motion {
   virtual void begin(const Joints& q) = 0;
   /// Sets a new target of a task. Returns false if the target is rejected because of its stamp.
   virtual bool push(std::size_t task, const Target& target) noexcept = 0;
+  /// Reduces the bounds of all filters on velocity to a fraction in (0, 1] (TargetFilter::set_speed).
+  virtual void set_speed(double fraction) noexcept = 0;
   /// One tick: sets the status, and the scale and the errors of each task.
   virtual void tick(Report& report) noexcept = 0;
   /// Brings the robot to rest until begin().

@@ -32,6 +32,7 @@ struct Report {
   Fault fault = Fault::kNone;
   std::size_t fault_joint = 0;
   fpbm::Status status = fpbm::Status::kOk;
+  double speed = 1.0;            ///< Fraction of the bounds on the velocity of the targets.
   double following_error = 0.0;  ///< Largest of all joints; after a fault, the value at the fault [rad].
   std::uint64_t missed = 0;      ///< Ticks in which another thread had locked an interface.
   std::uint64_t early = 0;       ///< Calls that came too soon to be ticks.
@@ -103,6 +104,7 @@ struct Report {
   });
   add("ticks with a locked interface", std::to_string(report.missed));
   add("calls that came too soon", std::to_string(report.early));
+  add("speed", std::to_string(report.speed));
   return message;
 }
 

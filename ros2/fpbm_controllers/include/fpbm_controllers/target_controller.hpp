@@ -62,7 +62,7 @@ class TargetController : public controller_interface::ControllerInterface {
   /// Throws std::runtime_error, which names the joint, if an interface cannot be read or the arm moves.
   [[nodiscard]] Joints start();
 
-  void take_targets() noexcept;
+  void take_messages() noexcept;
   /// Reads the joints' positions: the first joint that cannot be read keeps its last reading, and its number is
   /// returned.
   [[nodiscard]] std::optional<std::size_t> measure();

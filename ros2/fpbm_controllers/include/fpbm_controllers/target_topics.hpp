@@ -12,6 +12,7 @@
 #include <rclcpp/rclcpp.hpp>
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
 #include <realtime_tools/realtime_thread_safe_box.hpp>
+#include <std_msgs/msg/float64.hpp>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct Exchange {
   explicit Exchange(std::size_t count) : tasks(count) {}
 
   std::vector<TargetExchange> tasks;
+  realtime_tools::RealtimeThreadSafeBox<double> speed{1.0};  ///< In (0, 1].
   realtime_tools::RealtimeThreadSafeBox<Report> report;
 
   // Used only by the callbacks.
@@ -42,7 +44,7 @@ struct Exchange {
   Report diagnosed;                ///< The last published report.
 };
 
-/// The controller's topics: three for each task, and the diagnostics. The destructor closes the topics.
+/// The controller's topics: three for each task, the speed, and the diagnostics. The destructor closes the topics.
 class TargetTopics {
  public:
   TargetTopics(rclcpp_lifecycle::LifecycleNode& node, const target_controller::Params& params,
@@ -58,6 +60,7 @@ class TargetTopics {
   std::shared_ptr<Exchange> exchange_;
   std::vector<std::shared_ptr<rclcpp::Subscription<geometry_msgs::msg::PoseStamped>>> poses_;
   std::vector<std::shared_ptr<rclcpp::Subscription<geometry_msgs::msg::TwistStamped>>> twists_;
+  std::shared_ptr<rclcpp::Subscription<std_msgs::msg::Float64>> speed_;
   std::shared_ptr<rclcpp::TimerBase> tip_timer_;
   std::shared_ptr<rclcpp::TimerBase> diagnostics_timer_;
 };

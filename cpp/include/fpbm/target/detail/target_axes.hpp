@@ -36,7 +36,15 @@ class TargetAxes {
   explicit TargetAxes(const TargetBounds<Scalar>& bounds)
       : lengths_(bounds.lengths()), angles_(Space::kTurns > 0 ? bounds.angles() : bounds.lengths()) {}
 
-  [[nodiscard]] const Axis& operator()(int i) const noexcept { return i < kLengths ? lengths_ : angles_; }
+  /// Fraction of the velocity bounds that the motion uses, in (0, 1].
+  void set_speed(Scalar fraction) noexcept { speed_ = fraction; }
+  [[nodiscard]] Scalar speed() const noexcept { return speed_; }
+
+  [[nodiscard]] Axis operator()(int i) const noexcept {
+    Axis axis = i < kLengths ? lengths_ : angles_;
+    axis.velocity *= speed_;
+    return axis;
+  }
 
   [[nodiscard]] Twist fastest() const noexcept {
     Twist result;
@@ -65,8 +73,8 @@ class TargetAxes {
     const auto approach_one = [&](int i) noexcept {
       const Scalar v = velocity(i);
       const AxisState<Scalar> state{Scalar(0), xd(i) - v, xdd(i)};
-      const Scalar tolerance = (*this)(i).tolerance(state, size, h);
-      const AxisState<Scalar> to = (*this)(i).approach(state, error(i), v, seconds, tolerance);
+      const Axis axis = (*this)(i);
+      const AxisState<Scalar> to = axis.approach(state, error(i), v, seconds, axis.tolerance(state, size, h));
       motion.arrived = motion.arrived && to.q == error(i) && to.v == Scalar(0) && to.a == Scalar(0);
       return to;
     };
@@ -102,6 +110,7 @@ class TargetAxes {
 
   Axis lengths_;
   Axis angles_;
+  Scalar speed_{1};
 };
 
 }  // namespace fpbm
