@@ -1,12 +1,14 @@
 """A whole motion: simulated without limits, or tracked within the joint limits."""
 
 from collections.abc import Callable, Mapping, Sequence
+from math import inf
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from .._core import failed, rollout
+from .._core import fastest as fastest_motion
 from ..arms import Arm
 from ..bounds import Bound, bounds_of
 from ..errors import ResolutionError, not_one_of, require, wrong
@@ -17,7 +19,7 @@ from ..schemes import Scheme
 from ..tasks import PoseTask, Stack
 from .run import Run
 from .run_data import Paths, RunStatus
-from .smooth import smooth_all
+from .smooth import by_task, has_duration, smooth_all
 
 
 class LimitOptions(NamedTuple):
@@ -147,10 +149,11 @@ def track(
     keep_path, reserve
         Whether the tip stays on the path if the path is faster than the limits allow: the path then lasts (1 + reserve)
         times the duration of fastest(). Needs a scheme at velocity level, and a start at rest. The durations and time
-        laws of shapes have no effect, except that the motion is not shorter than the path. Nearly singular postures are
-        not damped: the bounds on the joints limit the motion there.
+        laws of shapes have no effect, except that the motion is not shorter than the path. A path without a duration
+        always lasts (1 + reserve) times the duration of fastest(). Nearly singular postures are not damped: the bounds
+        on the joints limit the motion there.
     """
-    require_motion(arm, path, scheme)
+    require_motion(arm, path, scheme, timed=not keep_path)
     options = motion_options(arm, dt, hold, qd0)
     name, kind, followed, tasks = task_and_paths(smooth_all(path) if keep_path else path, task, stack)
     limited = LimitOptions(
@@ -167,15 +170,26 @@ def track(
         bool(keep_path),
         reserve,
     )
+    if keep_path and not has_duration(path):
+        # The motion in the null space depends on the duration of the path: the plan needs the least duration.
+        _, least, *_ = fastest_motion(arm, followed, scheme, q0, dt, kind, limited.limits, inf, inf, (), tasks)
+        *_, followed, tasks = task_and_paths(smooth_all(path, max(least, dt)), task, stack)
     outcome = rollout(arm, followed, scheme, q0, options["qd0"], dt, hold, kind, limited, tasks)
     options |= {**limited._asdict(), "stack": stack}
     return make_run(outcome, q0, arm, path, scheme, name, options, track)
 
 
-def require_motion(arm: object, path: object, *schemes: object) -> None:
-    """Raise ParameterError unless the arguments of a motion are an arm, a path and schemes."""
+def require_motion(arm: object, path: Any, *schemes: object, timed: bool = True) -> None:
+    """Raise ParameterError unless the arguments of a motion are an arm, a path and schemes.
+
+    timed: whether each path must have a duration.
+    """
     require("arm", arm, (Arm, Robot), "an arm or a Robot")
     require("path", path, (Path, Mapping), "a path, or a dictionary of paths by task name")
+    for name, each in by_task(path).items():
+        require(f"path[{name!r}]", each, Path, "a path")
+        if timed:
+            each._require_duration()
     for scheme in schemes:
         require("scheme", scheme, Scheme, "a scheme")
 
@@ -196,9 +210,8 @@ def task_and_paths(path: Paths, task: str | None, stack: Stack | None) -> tuple[
         return name, kind, path, None if stack is None else StackTasks(stack, name)
     if stack is None or not path:
         raise wrong("path", path, f" = {path!r:.80}: must be one path, or paths by task names of a stack")
-    for each, followed in path.items():
+    for each in path:
         path_task(each, stack)
-        require(f"path[{each!r}]", followed, Path, "a path")
     name = next(iter(path)) if task is None else task
     if name not in path:
         raise not_one_of("task", name, path)
