@@ -1,6 +1,7 @@
 #include <pybind11/typing.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <string>
@@ -17,9 +18,36 @@
 #include "sources.hpp"
 
 namespace fpbm::bindings {
+namespace {
+
+/// A path without a duration: the geometry of a path, with the duration NaN.
+template <typename Space_>
+struct Untimed {
+  using Scalar = double;
+  using Space = Space_;
+
+  AnyPath<Space> geometry;
+
+  [[nodiscard]] double duration() const noexcept { return std::numeric_limits<double>::quiet_NaN(); }
+  [[nodiscard]] Reference<Space> sample(double t) const noexcept { return geometry.sample(t); }
+};
+
+std::optional<double> duration_of(const Path& path) {
+  const double duration = path.duration();
+  return std::isnan(duration) ? std::nullopt : std::optional(duration);
+}
+
+void require_duration(const Path& path) {
+  if (!duration_of(path)) {
+    validation::reject("path", ": has no duration: give a duration, or use fastest(), or keep_path=True");
+  }
+}
+
+}  // namespace
 
 template <typename Space>
 AnyPath<Space> Path::as() const {
+  require_duration(*this);
   return std::visit([](const auto& path) { return convert_path<Space>(path); }, any);
 }
 
@@ -141,7 +169,7 @@ Path waypoints(const ArrayLike& points, const std::optional<double>& duration, c
   constexpr double kNone = std::numeric_limits<double>::infinity();
   const bool bounded = velocity || acceleration || angular_velocity || angular_acceleration || jerk || angular_jerk;
   if (duration.has_value() + times.has_value() + bounded != 1) {
-    validation::reject("duration", ", times or bounds of velocity: must be given, exactly one of the three");
+    validation::reject("duration", ", times or bounds of velocity: must be given, at most one of the three");
   }
   Timing timing = TipBounds<>{velocity.value_or(kNone),
                               acceleration.value_or(kNone),
@@ -172,7 +200,18 @@ Path at_speed(const Path& path, double speed, double acceleration, const std::op
       path.any);
 }
 
+/// The path without its duration.
+Path untimed(const Path& path) {
+  return std::visit(
+      [](const auto& any) -> Path {
+        using Any = std::decay_t<decltype(any)>;
+        return {Any(Untimed<typename Any::Space>{any})};
+      },
+      path.any);
+}
+
 py::typing::Tuple<Array, Array, Array> sample(const Path& path, double t) {
+  require_duration(path);
   validation::require_finite("t", t);
   return std::visit(
       [t](const auto& any) {
@@ -189,7 +228,8 @@ void bind_path(py::module_& m) {
   m.attr("TIME_LAWS") = py::make_tuple(laws[0], laws[1], laws[2]);
   py::class_<Path>(m, "Path", "The compiled part of a path.")
       .def(py::init<const Path&>(), py::arg("path"))
-      .def("_duration", &Path::duration)
+      .def("_duration", &duration_of)
+      .def("_require_duration", &require_duration)
       .def("sample", &sample, py::arg("t"),
            R"((x, xd, xdd) at t [s], as a displacement from the start of the tip [m, m/s, m/s^2].
 
@@ -210,6 +250,7 @@ have shape (m,), linear rows first, then angular. Outside 0 <= t <= T, the refer
   m.def("with_rotation", &with_rotation, py::arg("path"), py::arg("rotation"), law);
   m.def("at_speed", &at_speed, py::arg("path"), py::arg("speed"), py::arg("acceleration"), py::arg("jerk"));
   m.def("sequence", &sequence, py::arg("paths"));
+  m.def("untimed", &untimed, py::arg("path"));
 }
 
 }  // namespace fpbm::bindings

@@ -493,6 +493,17 @@ The tasks keep their targets; tick.scales and enable() use the new levels. Comma
 
 shape must have the kind of the given obstacle; place and size may change. Raises ParameterError if no obstacle has
 that name, or if the shape has another kind.)")
+      .def(
+          "set_speed",
+          [](PyTracker& self, double fraction) {
+            if (!self.visit_any([&](auto& tracker) { return tracker.set_speed(fraction); })) {
+              validation::fail("fraction", fraction, "in (0, 1]");
+            }
+          },
+          py::arg("fraction"),
+          "Sets the speed of the paths and filters of the following ticks to a fraction in (0, 1]: "
+          "PathFollower.set_speed\n"
+          "and TargetFilter.set_speed, for an operator's slider. Targets without a filter are not slowed.")
       .def("stop", any([](auto& tracker) { tracker.stop(); }),
            "Brings every joint to rest as fast as the limits allow, until resume; with keep_first_level, in the null\n"
            "space of the first level.")

@@ -178,7 +178,7 @@ Outcomes fastest(const Model& arm, const Path& path, const Scheme& scheme, const
     using Space = decltype(space);
     const AnyPath<Space> same = path.as<Space>();
     Motion<Space> motion{any, same, scheme, start, TimeGrid<double>(duration, duration), stack ? &*stack : nullptr};
-    const JointPath<kDynamic> along = motion.joint_path(duration);
+    const JointPath<kDynamic> along = motion.joint_path(duration, duration);
     if (!along.joints) {
       Arrays last;
       last["q"] = array_of(along.result.last.q);

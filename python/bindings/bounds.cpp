@@ -18,8 +18,8 @@ void AnyBounds::gaps(const JointVector& q, double range,
 void AnyBounds::require(const JointVector& q) {
   all_.require(q);
 }
-double AnyBounds::least_gap(const JointVector& q, double range) noexcept {
-  return all_.least_gap(q, range);
+double AnyBounds::closeness(const JointVector& q, double range) noexcept {
+  return all_.closeness(q, range);
 }
 double AnyBounds::speed_ratio(const JointVector& q, const JointVector& qd) noexcept {
   return all_.speed_ratio(q, qd);

@@ -35,7 +35,7 @@ class AnyBounds {
   template <Level kLevel>
   [[nodiscard]] bool accepts(const State<kDynamic>& from, const Stop<kLevel, kDynamic>& stop) noexcept;
   void gaps(const JointVector& q, double range, const std::function<void(double, const JointVector&)>& f) noexcept;
-  [[nodiscard]] double least_gap(const JointVector& q, double range) noexcept;
+  [[nodiscard]] double closeness(const JointVector& q, double range) noexcept;
   [[nodiscard]] double speed_ratio(const JointVector& q, const JointVector& qd) noexcept;
   [[nodiscard]] Status status(std::uint32_t active) const noexcept { return all_.status(active); }
   [[nodiscard]] double near_distance_sum() const noexcept { return all_.near_distance_sum(); }

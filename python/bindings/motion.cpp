@@ -1,6 +1,7 @@
 #include "motion.hpp"
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace fpbm::bindings {
@@ -22,10 +23,19 @@ FastestClock Motion<Space>::clock(const Spline<kDynamic>& joints, const JointLim
 }
 
 template <typename Space>
-JointPath<kDynamic> Motion<Space>::joint_path(double duration) const {
+JointPath<kDynamic> Motion<Space>::joint_path(double duration, double lasting) const {
+  const double factor = lasting / duration;
+  const AnyPath<Space> stretched(Stretched(path, factor));
+  std::optional<StackOptions> tasks;
+  if (stack != nullptr) {
+    tasks = *stack;
+    tasks->duration *= factor;
+    for (TaskPath& each : tasks->paths) each.stretch(factor);
+  }
   return fpbm::joint_path<kDynamic>(duration, [&](int intervals, std::vector<JointVector>& rows) {
-    Motion nodes = *this;
-    nodes.grid = TimeGrid<double>(duration, duration / intervals);
+    const double whole = tasks ? tasks->duration : stretched.duration();  // Equal to `lasting` up to round-off.
+    const TimeGrid<double> grid_of_nodes(whole, whole / intervals);
+    const Motion nodes{arm, stretched, scheme, start, grid_of_nodes, tasks ? &*tasks : nullptr};
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> q(nodes.grid.samples(), start.q.size());
     Output<Space> output;
     output.buffers.q = q.data();
@@ -46,11 +56,8 @@ std::shared_ptr<const KeptMotion> Motion<Space>::kept_motion(const JointLimits<k
   if (start.qd.cwiseAbs().maxCoeff() > kAtRest) {
     validation::reject("qd0", ": must be zero with keep_path: stop the arm first");
   }
-  const JointPath<kDynamic> along = joint_path(duration);
-  require_followed(along, duration);
-  FastestClock found = clock(*along.joints, limits, bounds, options);
-  stretch_to(found, shortest, options.dt);
-  return fpbm::kept_motion(*along.joints, found, limits, bounds, options.dt);
+  const auto joints_of = [&](double lasting) { return joint_path(duration, lasting); };
+  return fpbm::kept_motion(path, duration, joints_of, limits, bounds, shortest, options);
 }
 
 template struct Motion<Position<2>>;

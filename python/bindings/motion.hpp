@@ -7,6 +7,7 @@
 #include "fpbm/any/detail/any_path.hpp"
 #include "fpbm/simulate/detail/motion.hpp"
 #include "fpbm/simulate/fastest.hpp"
+#include "fpbm/simulate/kept_path.hpp"
 #include "fpbm/simulate/rollout.hpp"
 #include "fpbm/simulate/summary.hpp"
 #include "scheme.hpp"
@@ -89,8 +90,8 @@ struct Motion {
   /// fit.
   RolloutResult<kDynamic> track(const LimitOptions& limit_options, const Output<Space>& output) const;
 
-  /// joint_path() of the motion, whose path has a duration [s].
-  [[nodiscard]] JointPath<kDynamic> joint_path(double duration) const;
+  /// joint_path() of the motion, whose path has a duration [s], if the path lasts `lasting` seconds.
+  [[nodiscard]] JointPath<kDynamic> joint_path(double duration, double lasting) const;
   /// The plan of kept_path() for the motion, whose path has a duration [s]. shortest: least duration of the motion
   /// [s]. Throws std::invalid_argument as kept_path() does, and unless the scheme is at velocity level and the motion
   /// starts at rest.

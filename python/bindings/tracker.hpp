@@ -49,7 +49,7 @@ class AnyTracker {
   /// One tick with a source of references: a Reference, a path, a filter, or StackReferences.
   template <typename Source>
   Result tick(Source&& source) noexcept {
-    look_ahead(source, stopping_, bounds(), state().q);
+    prepare_source(source, speed_, stopping_, bounds(), state().q);
     const Result result = advance(references_of(Space{}, dt_, source));
     advance_source(source, dt_, stopping_, result.path_fraction);
     return result;
@@ -61,6 +61,13 @@ class AnyTracker {
   /// Levels of a stack. For a single task, the result is false, without an effect.
   virtual bool enable(int level, bool on) noexcept = 0;
   virtual bool reorder(const std::array<int, AnyStack::kLevels>& order) noexcept = 0;
+  /// Sets the speed of the sources of the following ticks. Returns false without an effect if the fraction is not in
+  /// (0, 1].
+  bool set_speed(double fraction) noexcept {
+    const bool good = fraction > 0.0 && fraction <= 1.0;
+    if (good) speed_ = fraction;
+    return good;
+  }
   virtual void stop() noexcept = 0;
   virtual void resume() noexcept = 0;
 
@@ -80,6 +87,7 @@ class AnyTracker {
 
  protected:
   double dt_;
+  double speed_ = 0.0;  ///< Of set_speed(); 0: each source has its own speed.
   bool stopping_ = false;
 };
 

@@ -62,6 +62,7 @@ __all__: list[str] = [
     "sequence",
     "sweep_chunk",
     "tricuspid",
+    "untimed",
     "use_lanes",
     "waypoints",
     "with_rotation",
@@ -236,7 +237,8 @@ class Path:
     The compiled part of a path.
     """
     def __init__(self, path: Path) -> None: ...
-    def _duration(self) -> float: ...
+    def _duration(self) -> float | None: ...
+    def _require_duration(self) -> None: ...
     def sample(
         self, t: typing.SupportsFloat | typing.SupportsIndex
     ) -> tuple[
@@ -1202,6 +1204,7 @@ def tricuspid(
     duration: typing.SupportsFloat | typing.SupportsIndex,
     time_law: str,
 ) -> Path: ...
+def untimed(path: Path) -> Path: ...
 def use_lanes(code: typing.Any) -> int: ...
 def waypoints(
     points: numpy.typing.ArrayLike,

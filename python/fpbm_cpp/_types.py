@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     ArrayField = Field[Array, ArrayLike]
     OptionalArrayField = Field[Array | None, ArrayLike | None]
     FilledArrayField = Field[Array, ArrayLike | None]
-    DerivedField = Field[float, float | None]
 
 else:
-    ArrayField = OptionalArrayField = FilledArrayField = DerivedField = Any
+    ArrayField = OptionalArrayField = FilledArrayField = Any

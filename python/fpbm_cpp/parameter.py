@@ -33,7 +33,7 @@ class Parameter:
     """Declaration of a parameter."""
 
     name: str = ""
-    type: type = object  # float, int, str, numpy.ndarray, or object for any other type.
+    type: type = object  # float, int, bool, str, numpy.ndarray, or object for any other type.
     annotation: str = ""  # The type as written in the source.
     default: Any = REQUIRED  # Default of constructors.
     usual: Any = REQUIRED  # Default of jobs and of the command line.
@@ -82,6 +82,8 @@ class Parameter:
             return value
         if self.type is str and not isinstance(value, str):
             raise self._error(value, "text")
+        if self.type is bool and not isinstance(value, bool):
+            raise self._error(value, "true or false")
         return self._numbers(value) if self.shape or self.type in (float, int) else value
 
     def _has(self, value: Any) -> Any:
@@ -145,7 +147,7 @@ def _parameters(maker: Any) -> dict[str, Parameter]:
     for name, argument in inspect.signature(maker).parameters.items():
         known = declared.get(name, Parameter(default=argument.default, usual=argument.default))
         annotation = str(argument.annotation)
-        kind = {"float": float, "int": int, "str": str}.get(annotation.split(" | ")[0], known.type)
+        kind = {"float": float, "int": int, "bool": bool, "str": str}.get(annotation.split(" | ")[0], known.type)
         kind, whole = np.ndarray if known.shape else kind, known.whole or kind is int
         found[name] = replace(known, name=name, type=kind, whole=whole, annotation=annotation)
     own_first = [name for each in inspect.getmro(maker) for name in inspect.get_annotations(each)] if declared else ()
@@ -182,6 +184,11 @@ class Data:
     def _values(self) -> dict[str, Any]:
         """Arguments of the constructor, by name."""
         return {name: getattr(self, name) for name in parameters(library_class(type(self)))}
+
+    def _with(self: D, **changes: Any) -> D:
+        """An object of the library's class with other arguments."""
+        made: D = library_class(type(self))(**{**self._values(), **changes})
+        return made
 
     def _given(self) -> dict[str, Any]:
         """Arguments of the constructor that differ from their defaults."""

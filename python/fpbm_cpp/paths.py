@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import KW_ONLY, replace
 from functools import cached_property
 from math import inf, pi
@@ -21,12 +21,13 @@ from ._core import (
     polyline,
     sequence,
     tricuspid,
+    untimed,
     waypoints,
     with_rotation,
 )
 from ._core import Path as CorePath
-from ._types import ArrayField, DerivedField, OptionalArrayField
-from .errors import require
+from ._types import ArrayField, OptionalArrayField
+from .errors import require, wrong
 from .parameter import NOT_NEGATIVE, POSITIVE, Data, Parameter, data, library_class, parameter, parameters
 
 __all__ = ["AtSpeed", "Circle", "InPlane", "Line", "Lissajous", "Path", "Polyline", "Sequence", "Tricuspid"]
@@ -38,7 +39,9 @@ COMPILERS: dict[str, Callable[..., CorePath]] = {
     for each in (circle, lissajous, tricuspid, line, polyline, waypoints, with_rotation, sequence, at_speed)
 }
 # Parameters of all shapes.
-DURATION = replace(POSITIVE, help="Duration T of the path.", usual=10.0, unit="s")
+DURATION = replace(
+    POSITIVE, help="Duration T; without a duration, the path is as fast as possible.", usual=10.0, unit="s"
+)
 TIME_LAW = Parameter(help="Time law of the fraction s of the path.", choices=TIME_LAWS)
 
 
@@ -49,6 +52,8 @@ class Path(Data, CorePath):
     the plane that in_plane() gives. Under task='position', a path of positions leaves the orientation of the tip free.
     Under task='pose', the orientation is constant unless with_rotation() rotates the tip.
 
+    A path without a duration is as fast as possible: for fastest(), for track(keep_path=True), and for at_speed().
+
     A time law gives the fraction s of the path, with tau = t/T. 'sin_squared' is the paper's sin^2(pi tau / 2); its
     acceleration is discontinuous at both ends. 'quintic' is 10 tau^3 - 15 tau^4 + 6 tau^5; its acceleration is zero at
     both ends. 'constant_speed' is tau.
@@ -57,8 +62,8 @@ class Path(Data, CorePath):
     kind: ClassVar[str]
 
     @cached_property
-    def duration(self) -> float:
-        """T [s]."""
+    def duration(self) -> float | None:
+        """T [s]; None for a path without a duration."""
         return self._duration()
 
     def in_plane(self, plane: str | ArrayLike) -> Path:
@@ -80,24 +85,52 @@ class Path(Data, CorePath):
         """This path, followed by another path that starts at the end of this path."""
         return Sequence((self, path))
 
+    def _finish(self) -> None:
+        CorePath.__init__(self, self._compiled() if self._is_timed() else untimed(self._lasting(1.0)))
+
+    def _compiled(self) -> CorePath:
+        """The compiled part of a path with a duration."""
+        return COMPILERS[library_class(type(self)).kind](*self._values().values())
+
+    def _is_timed(self) -> bool:
+        """Whether the path has a duration."""
+        return self.duration is not None
+
+    def _lasting(self, duration: float) -> Path:
+        """The geometry of this path with another duration."""
+        return self._with(duration=duration)
+
     def _smooth(self) -> Path:
         """This path with time laws that begin and end with zero velocity and acceleration; the geometry is equal."""
-        return replace(self, time_law="quintic") if "time_law" in self._values() else self
+        return self._with(time_law="quintic") if "time_law" in self._values() else self
 
     def _speed(self) -> float:
         """Bound on the speed of the tip [m/s]."""
         return inf
 
     def _kept(self) -> tuple[Path, float, float]:
-        """Arguments of a motion that keeps the path: geometry, bound on the speed [m/s], least duration [s].
+        """Arguments of a motion that keeps the path: smooth path, bound on the speed [m/s], least duration [s].
 
-        A path at a speed has no least duration: the speed decides.
+        A path at a speed, and a path without a duration, have no least duration.
         """
-        speed = self._speed()
-        return self._smooth(), speed, self.duration if speed == inf else 0.0
+        smooth = self._smooth()
+        if not smooth._is_timed():
+            return smooth._lasting(1.0), self._speed(), 0.0
+        return smooth, self._speed(), 0.0 if self._speed() < inf else smooth._duration() or 0.0
 
-    def _finish(self) -> None:
-        CorePath.__init__(self, COMPILERS[library_class(type(self)).kind](*self._values().values()))
+
+def are_timed(paths: Mapping[str, Path]) -> bool:
+    """Whether paths have durations. paths: by their names in the error.
+
+    Raises ParameterError if some paths have a duration, and others have none.
+    """
+    timed = {name: path._is_timed() for name, path in paths.items()}
+    if any(timed.values()):
+        for name in timed:
+            if not timed[name]:
+                mixed = ": has no duration, but another path has a duration: give all paths a duration, or no path"
+                raise wrong(name, paths[name], mixed)
+    return all(timed.values())
 
 
 @data
@@ -106,7 +139,7 @@ class Circle(Path):
 
     kind = "circle"
     radius: float = parameter("Radius r.", POSITIVE, unit="m", usual=0.1)
-    duration: float = parameter(like=DURATION)
+    duration: float | None = parameter(like=DURATION, default=None)
     _: KW_ONLY
     time_law: str = parameter(like=TIME_LAW, default="sin_squared")
 
@@ -122,7 +155,7 @@ class Lissajous(Path):
     amplitude: ArrayField = parameter(
         "Amplitude a: one number, or one for each axis.", POSITIVE, shape="() or (2,)", unit="m", usual=0.1
     )
-    duration: float = parameter(like=DURATION)
+    duration: float | None = parameter(like=DURATION, default=None)
     _: KW_ONLY
     frequencies: ArrayField = parameter(
         "Frequencies f: integers, so that the figure is closed.", default=(2, 1), shape="(2,)", whole=True, low=1.0
@@ -137,7 +170,7 @@ class Tricuspid(Path):
 
     kind = "tricuspid"
     size: float = parameter("Size a.", POSITIVE, unit="m", usual=0.05)
-    duration: float = parameter(like=DURATION)
+    duration: float | None = parameter(like=DURATION, default=None)
     _: KW_ONLY
     time_law: str = parameter(like=TIME_LAW, default="sin_squared")
 
@@ -148,7 +181,7 @@ class Line(Path):
 
     kind = "line"
     displacement: ArrayField = parameter("From start to end.", shape="(2,) or (3,)", unit="m", usual=(0.1, 0.0))
-    duration: float = parameter(like=DURATION)
+    duration: float | None = parameter(like=DURATION, default=None)
     _: KW_ONLY
     time_law: str = parameter(like=TIME_LAW, default="sin_squared")
 
@@ -168,7 +201,7 @@ class Polyline(Path):
         shape="(k, 2) or (k, 3) or (k, 4, 4)",
         unit="m",
     )
-    duration: float = parameter(like=DURATION)
+    duration: float | None = parameter(like=DURATION, default=None)
     _: KW_ONLY
     blend: float = parameter(
         "Distance from a corner at which the blend begins, at most half of the shorter segment.",
@@ -191,7 +224,8 @@ class Waypoints(Path):
     is continuous everywhere, also at the ends. Orientations are splines of quaternions, along the shorter rotation.
 
     Give the duration, the times, or bounds of the tip's motion. A duration is divided among the pieces by their
-    lengths. With bounds, the duration is the shortest duration within the bounds, to 1 %, rounded up to 0.01 s.
+    lengths. With bounds, the duration is the shortest duration within the bounds, to 1 %, rounded up to 0.01 s. Without
+    any of them, the path is as fast as possible.
     """
 
     kind = "waypoints"
@@ -201,7 +235,7 @@ class Waypoints(Path):
         unit="m",
     )
     _: KW_ONLY
-    duration: DerivedField = parameter("Duration T of the path.", POSITIVE, type=float, default=None, unit="s")
+    duration: float | None = parameter("Duration T of the path.", POSITIVE, default=None, unit="s")
     times: OptionalArrayField = parameter("Time of each point; the first is 0.", default=None, shape="(k,)", unit="s")
     velocity: float | None = parameter("Largest speed of the tip.", POSITIVE, default=None, unit="m/s")
     acceleration: float | None = parameter("Largest acceleration of the tip.", POSITIVE, default=None, unit="m/s^2")
@@ -216,16 +250,47 @@ class Waypoints(Path):
         if isinstance(self.duration, _Derived):  # dataclasses.replace() passes the derived duration.
             object.__setattr__(self, "duration", None)
         super().__post_init__()
-        if self.duration is None:
-            object.__setattr__(self, "duration", _Derived(self._duration()))
+        if self.duration is None and self._is_timed():
+            object.__setattr__(self, "duration", _Derived(self._duration() or 0.0))
 
     def _values(self) -> dict[str, Any]:
         values = super()._values()
         return {**values, "duration": None} if isinstance(self.duration, _Derived) else values
 
+    def _is_timed(self) -> bool:
+        return any(value is not None for name, value in self._values().items() if name != "points")
+
+    def _lasting(self, duration: float) -> Path:
+        if self.times is None:
+            return Waypoints(self.points, duration=duration)
+        return self._with(times=self.times * (duration / self.times[-1]))
+
+
+class _Changed(Path):
+    """A path that places or rotates another path."""
+
+    path: Path
+
+    def _finish(self) -> None:
+        require("path", self.path, Path, "a path")
+        super()._finish()
+
+    def _is_timed(self) -> bool:
+        return self.path._is_timed()
+
+    def _lasting(self, duration: float) -> Path:
+        return self._with(path=self.path._lasting(duration))
+
+    def _smooth(self) -> Path:
+        changed = self._with(path=self.path._smooth())
+        return changed._with(time_law="quintic") if "time_law" in self._values() else changed
+
+    def _speed(self) -> float:
+        return self.path._speed()
+
 
 @data
-class InPlane(Path):
+class InPlane(_Changed):
     """A planar path in a plane of space: path.in_plane(plane)."""
 
     path: Path = parameter("A path of positions in the plane.")
@@ -235,20 +300,13 @@ class InPlane(Path):
         shape="(2, 3)",
     )
 
-    def _smooth(self) -> Path:
-        return replace(self, path=self.path._smooth())
-
-    def _speed(self) -> float:
-        return self.path._speed()
-
-    def _finish(self) -> None:
-        require("path", self.path, Path, "a path")
+    def _compiled(self) -> CorePath:
         axes = np.eye(3)[["xyz".index(axis) for axis in self.plane]] if isinstance(self.plane, str) else self.plane
-        CorePath.__init__(self, in_plane(self.path, axes))
+        return in_plane(self.path, axes)
 
 
 @data
-class WithRotation(Path):
+class WithRotation(_Changed):
     """A path of positions with a rotation of the tip, from rest to rest over the whole duration."""
 
     kind = "with_rotation"
@@ -261,29 +319,16 @@ class WithRotation(Path):
     _: KW_ONLY
     time_law: str = parameter("Time law of the rotation.", default="quintic", choices=TIME_LAWS)
 
-    def _smooth(self) -> Path:
-        return replace(self, path=self.path._smooth(), time_law="quintic")
-
-    def _speed(self) -> float:
-        return self.path._speed()
-
-    def _finish(self) -> None:
-        require("path", self.path, Path, "a path")
-        super()._finish()
-
 
 @data
 class Sequence(Path):
-    """Paths one after another: path.then(next). A Sequence among the paths is replaced by its paths."""
+    """Paths one after another: path.then(next). A Sequence among the paths is replaced by its paths.
+
+    All paths have a duration, or no path has a duration.
+    """
 
     kind = "sequence"
     paths: tuple[Path, ...] = parameter("Paths in their order, at least one.")
-
-    def _smooth(self) -> Path:
-        return replace(self, paths=tuple(path._smooth() for path in self.paths))
-
-    def _speed(self) -> float:
-        return min(path._speed() for path in self.paths)
 
     def _finish(self) -> None:
         require("paths", self.paths, (list, tuple), "a sequence of paths")
@@ -292,6 +337,20 @@ class Sequence(Path):
         parts = (path.paths if isinstance(path, Sequence) else (path,) for path in self.paths)
         object.__setattr__(self, "paths", sum(parts, ()))
         super()._finish()
+
+    def _is_timed(self) -> bool:
+        return are_timed({f"paths[{i}]": path for i, path in enumerate(self.paths)})
+
+    def _lasting(self, duration: float) -> Path:
+        shares = [path._duration() or 1.0 for path in self.paths]
+        factor = duration / sum(shares)
+        return self._with(paths=[path._lasting(factor * share) for path, share in zip(self.paths, shares)])
+
+    def _smooth(self) -> Path:
+        return self._with(paths=[path._smooth() for path in self.paths])
+
+    def _speed(self) -> float:
+        return min(path._speed() for path in self.paths)
 
 
 @data
@@ -311,18 +370,28 @@ class AtSpeed(Path):
     acceleration: float = parameter("Largest acceleration along the path.", POSITIVE, unit="m/s^2", usual=0.5)
     jerk: float | None = parameter("Largest jerk along the path.", POSITIVE, default=None, unit="m/s^3")
 
-    def _smooth(self) -> Path:
-        return self.path._smooth()
-
-    def _speed(self) -> float:
-        return self.speed
-
     def _finish(self) -> None:
         require("path", self.path, Path, "a path")
         super()._finish()
 
+    def _compiled(self) -> CorePath:
+        path = self.path if self.path._is_timed() else self.path._lasting(1.0)
+        return at_speed(path, self.speed, self.acceleration, self.jerk)
 
-# Paths by the kind in a table, and the options that place and rotate a path.
+    def _is_timed(self) -> bool:
+        return True
+
+    def _lasting(self, duration: float) -> Path:
+        return self.path._lasting(duration)
+
+    def _smooth(self) -> Path:
+        return self._lasting(self._duration() or 0.0)._smooth()
+
+    def _speed(self) -> float:
+        return self.speed
+
+
+# Paths by the kind in a table, and the options that place and rotate a path, and give it a constant speed.
 PATHS: dict[str, type[Path]] = {
     path.kind: path for path in (Circle, Lissajous, Tricuspid, Line, Polyline, Waypoints, AtSpeed)
 }
@@ -332,4 +401,12 @@ PATH_OPTIONS: dict[str, Parameter] = {
     "rotation_time_law": replace(
         parameters(WithRotation)["time_law"], name="rotation_time_law", default=None, usual=None
     ),
+    **{
+        name: replace(parameters(AtSpeed)[name.removeprefix("at_")], name=name, default=None, usual=None, help=text)
+        for name, text in (
+            ("at_speed", "Constant speed of the tip along the path; needs at_acceleration."),
+            ("at_acceleration", "Largest acceleration along the path, with at_speed."),
+            ("at_jerk", "Largest jerk along the path, with at_speed."),
+        )
+    },
 }

@@ -3,9 +3,9 @@
     {"kind": "fpbm", "alpha": 0.6, "weights": [1, 2, 3, 4], "k1": 10.0, "k2": 25.0}
 
 A table has the kind of its object and the parameters by name. The table of a path may also have in_plane,
-with_rotation and rotation_time_law. Several paths, one after another, are a list of tables; paths of several tasks are
-a table with a path, or a list of paths, for each task name. A stack is a list of tables of tasks, each with its level,
-counted from 0.
+with_rotation and rotation_time_law, and at_speed, at_acceleration and at_jerk for a constant speed. Several paths, one
+after another, are a list of tables; paths of several tasks are a table with a path, or a list of paths, for each task
+name. A stack is a list of tables of tasks, each with its level, counted from 0.
 """
 
 import math
@@ -186,11 +186,18 @@ class _Reader:
 
     def _made(self, maker: Callable[..., Any], values: dict[str, Any]) -> Any:
         values.pop("level", None)  # Read by _stack().
-        plane, rotation, law = (values.pop(key, None) for key in PATH_OPTIONS)
+        plane, rotation, law, speed, acceleration, jerk = (values.pop(key, None) for key in PATH_OPTIONS)
         thing = maker(**values)
         if plane is not None:
             thing = thing.in_plane(plane)
-        return thing if rotation is None else thing.with_rotation(rotation, time_law=law or "quintic")
+        if rotation is not None:
+            thing = thing.with_rotation(rotation, time_law=law or "quintic")
+        if speed is None and acceleration is None and jerk is None:
+            return thing
+        for key, value in (("at_speed", speed), ("at_acceleration", acceleration)):
+            if value is None:
+                raise wrong(key, None, ": is missing: a constant speed needs at_speed and at_acceleration")
+        return thing.at_speed(speed, acceleration=acceleration, jerk=jerk)
 
     def _value(self, value: Any, parameter: Parameter, maker: Callable[..., Any], name: str) -> Any:
         if (maker, parameter.name) in WITHIN:

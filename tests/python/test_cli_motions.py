@@ -85,6 +85,74 @@ def test_fastest_selects_a_scheme_at_velocity_level():
     assert "--also needs --out" in call("fastest", "panda", "--also", "csv").output
 
 
+PANDA_READY = [0.0, -0.7854, 0.0, -2.3562, 0.0, 1.5708, 0.7854]
+
+
+def run_of(folder: str, *arguments: str) -> fp.Run:
+    """The run of a call that succeeds."""
+    result = call(*arguments, "--out", folder)
+    assert result.exit_code == 0, result.output
+    return fp.load(Path(folder) / "run.npz")
+
+
+@pytest.mark.usefixtures("small_figures")
+def test_a_kept_path_without_a_duration_is_as_fast_as_possible() -> None:
+    """The job of fastest keeps its path."""
+    arm, path = fp.SerialArm.preset("panda"), fp.Circle(0.15).in_plane("yz")
+    fast = run_of("fast", "fastest", "panda", "--radius", "0.15", "--task", "pose")
+    assert fast.path == path
+    assert fast == replace(fp.fastest(arm, path, fp.MVN(), PANDA_READY, task="pose"), options=fast.options)
+    kept = run_of("kept", "track", "panda", "--radius", "0.15", "--task", "pose", "--keep-path")
+    assert kept.path == path
+    expected = fp.track(arm, path, fp.MVN(), PANDA_READY, task="pose", keep_path=True, null_damping=0)
+    np.testing.assert_array_equal(kept.q, expected.q)
+    assert kept.replay() == kept
+    for folder in ("fast", "kept"):
+        job = read_job(f"{folder}/job.toml")
+        assert "duration" not in job["path"]
+        assert (job["run"]["keep_path"], job["run"]["reserve"]) == (True, 0.05)
+        assert run_of("again", "track", "--job", f"{folder}/job.toml") == kept
+    slower = run_of("slower", "track", "--job", "kept/job.toml", "--reserve", "0.5")
+    np.testing.assert_allclose(slower.t[-1], 1.5 * fast.t[-1], atol=2.1e-3)
+    assert run_of("slow", "track", "--job", "kept/job.toml", "--duration", "2").t[-1] == pytest.approx(2.0)
+    assert run_of("free", "track", "--job", "kept/job.toml", "--no-keep-path").t[-1] == pytest.approx(10.0)
+    assert "keep_path" not in call("track", "panda", *QUICK).output
+
+
+def test_paths_of_a_job_are_kept() -> None:
+    """If a path of a job has a duration, the other paths have the default duration."""
+    result = call("track", "two_pandas", "--task", "left_tip", "--task", "right_tip", "--radius", "0.05", "--keep-path")
+    assert result.exit_code == 0, result.output
+    assert float(result.output.split("complete, t = ")[1].split()[0]) < 2
+    pieces = "[[path]]\nkind = 'line'\ndisplacement = [0, 0.1, 0]\n" * 2
+    Path("job.toml").write_text(f"[arm]\nkind = 'preset'\nname = 'panda'\n[run]\nkeep_path = true\n{pieces}")
+    fast = run_of("fast", "track", "--job", "job.toml")
+    assert fast.path.duration is None
+    Path("job.toml").write_text(Path("job.toml").read_text() + "duration = 2.0\n")
+    assert run_of("slow", "track", "--job", "job.toml").t[-1] == pytest.approx(12.0)
+    for name in ("sweep", "tune"):
+        assert error_of(name, "--job", "job.toml").endswith(
+            "run.keep_path: must not be given here: use track to keep a path"
+        )
+    assert "No such option '--keep-path'" in call("sweep", "panda", "--keep-path").stderr
+    compared = call("compare", "panda", "--keep-path", "--schemes", "mvn,wmvn")
+    assert compared.exit_code == 0, compared.output
+    Path("job.toml").write_text(Path("job.toml").read_text().replace("true", "'yes'"))
+    assert error_of("track", "--job", "job.toml") == "job.toml: run.keep_path = 'yes': must be true or false"
+
+
+@pytest.mark.usefixtures("small_figures")
+def test_a_path_at_a_constant_speed() -> None:
+    speed = ["--at-speed", "0.2", "--at-acceleration", "0.5", "--at-jerk", "20"]
+    run = run_of("steady", "track", "panda", "--radius", "0.1", *speed)
+    assert run.path == fp.Circle(0.1).in_plane("yz").at_speed(0.2, acceleration=0.5, jerk=20)
+    assert run_of("again", "track", "--job", "steady/job.toml") == run
+    kept = run_of("kept", "track", "panda", "--radius", "0.1", *speed, "--keep-path")
+    np.testing.assert_allclose(kept.t[-1], run.t[-1], atol=1.1e-3)
+    assert run_of("fast", "fastest", "panda", "--radius", "0.1", *speed).t[-1] < 1
+    assert "duration" not in call("track", "panda", *speed).output
+
+
 @pytest.fixture(autouse=True)
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
@@ -469,8 +537,19 @@ TWO_BRANCHES = """<robot name="two"><link name="base"/><link name="camera"/><lin
         (["panda", "--dt", "0.3"], "--dt = 0.3: must be a divisor of duration = 10"),
         (["panda", "--task", "pos"], "--task = 'pos': must be one of position, pose; did you mean 'pose'?"),
         (["panda", "--path", "waypoints", "--duration", "1"], "--points: is missing"),
-        (["panda", "--path", "waypoints", "--points", "0,0;1,0"], "times or bounds of velocity: must be given"),
+        (["panda", "--path", "waypoints", "--points", "0,0;1,0"], "path: has no duration: give a duration"),
         (["planar:1,1", "--in-plane", "xy"], "path: is in space, and the arm is planar: must be a planar path"),
+        (["panda", "--at-speed", "0.1"], "--at-acceleration: is missing: a constant speed needs at_speed and at_accel"),
+        (["panda", "--at-jerk", "1"], "--at-speed: is missing: a constant speed needs at_speed and at_acceleration"),
+        (["panda", "--at-speed", "-1", "--at-acceleration", "1"], "--at-speed = -1: must be positive and finite"),
+        (["panda", "--at-speed", "1", "--at-acceleration", "x"], "--at-acceleration = 'x': must be a number"),
+        (["panda", "--reserve", "0.1"], "--reserve: has no effect without keep_path: give keep_path"),
+        (["panda", "--keep-path", "--reserve", "-1"], "--reserve = -1: must be finite and not negative"),
+        (["panda", "--keep-path", "--scheme", "fpbm"], "--keep-path needs a scheme at velocity level"),
+        (["panda", "--keep-path", "--qd0", "1,0,0,0,0,0,0"], "--qd0: must be zero with keep_path"),
+        (["panda", "--keep-path", "--q0", "0,0"], "--q0 has 2 entries: must have 7, one per joint"),
+        (["panda", "--keep-path", "--radius", "0.6"], "path: can be followed to the fraction 0."),
+        (["planar:1,1,1", "--keep-path"], "--limit-acceleration[0] = inf: must be finite"),
         (["--job", "none.toml"], "cannot read none.toml: No such file or directory"),
         (["--job", "bad.toml"], "bad.toml: must be valid TOML: "),
         (["--job", "wrong.toml"], "wrong.toml: path.radius = -1: must be positive and finite"),

@@ -404,9 +404,9 @@ CIRCLE = {"kind": "circle", "radius": 1, "duration": 1}
         (
             {**CIRCLE, "radus": 1},
             PATHS,
-            ["path.radus: is not a key of circle", "rotation_time_law; did you mean 'radius'?"],
+            ["path.radus: is not a key of circle", "at_jerk; did you mean 'radius'?"],
         ),
-        ({"kind": "circle", "radius": 1}, PATHS, ["path.duration: is missing"]),
+        ({"kind": "circle", "duration": 1}, PATHS, ["path.radius: is missing"]),
         ({**CIRCLE, "in_plane": "xw"}, PATHS, ["path.in_plane = 'xw': must be one of xy, xz, yx, yz, zx, zy"]),
         ([CIRCLE, {**CIRCLE, "radius": 0}], PATHS, ["path[1].radius = 0: must be positive"]),
         ([{"kind": "axes"}], TASKS, ["path[0].kind = 'axes': must be one of position", "did you mean 'axis'?"]),
@@ -429,14 +429,15 @@ def test_invalid_tables_are_rejected(table, makers, words):
 
 
 def test_all_problems_are_reported():
-    table = [{**CIRCLE, "radius": 0, "time_law": "sin"}, {"kind": "line", "displacement": [1, 2, 3, 4]}]
+    table = [{**CIRCLE, "radius": 0, "time_law": "sin"}, {"kind": "tricuspid", "duration": "x"}]
     names = [problem.name for problem in problems(table, PATHS, "path")]
-    assert names == ["path[0].radius", "path[0].time_law", "path[1].displacement", "path[1].duration"]
+    assert names == ["path[0].radius", "path[0].time_law", "path[1].duration", "path[1].size"]
     assert [problem.name for problem in problems(table, PATHS, "path", usual=True)] == names[:3]
 
 
 def test_path_options_equal_those_of_the_paths():
-    assert set(PATH_OPTIONS) == {"in_plane", "with_rotation", "rotation_time_law"}
+    placed = {"in_plane", "with_rotation", "rotation_time_law"}
+    assert set(PATH_OPTIONS) == placed | {"at_speed", "at_acceleration", "at_jerk"}
 
 
 def test_foreign_objects_have_no_table():

@@ -103,6 +103,10 @@ def test_arms(table: dict[str, Any], arm: Any) -> None:
             fp.Circle(0.2, 10.0).in_plane("xz").at_speed(0.2, acceleration=0.5),
         ),
         (
+            "kind = 'circle'\nradius = 0.2\nin_plane = 'xz'\nat_speed = 0.2\nat_acceleration = 0.5\nat_jerk = 5",
+            fp.Circle(0.2).in_plane("xz").at_speed(0.2, acceleration=0.5, jerk=5),
+        ),
+        (
             "kind = 'circle'\nin_plane = 'xy'\nwith_rotation = [0, 0, 1]\nrotation_time_law = 'sin_squared'",
             fp.Circle(0.1, 10.0).in_plane("xy").with_rotation([0, 0, 1], time_law="sin_squared"),
         ),
@@ -430,7 +434,7 @@ LAWS = "sin_squared, quintic, constant_speed"
         (f"{ARM}[path]\nkind = 'circle'\nradius = '1'", "path.radius = '1': must be a number"),
         (f"{ARM}[path]\nkind = 'circle'\nradius = true", "path.radius = True: must be a number"),
         (f"{ARM}[path]\nkind = 'circle'\nradius = nan", "path.radius = nan: must be positive and finite"),
-        (f"{ARM}[path]\nkind = 'circle'\nradus = 1", "rotation_time_law; did you mean 'radius'?"),
+        (f"{ARM}[path]\nkind = 'circle'\nradus = 1", "at_jerk; did you mean 'radius'?"),
         (f"{ARM}[path]\nkind = 'circle'\ntime_law = 'sin'", f"path.time_law = 'sin': must be one of {LAWS}"),
         (
             f"{ARM}[path]\nkind = 'circle'\nin_plane = 'xw'",
@@ -441,7 +445,7 @@ LAWS = "sin_squared, quintic, constant_speed"
             f"{ARM}[path]\nkind = 'lissajous'\nfrequencies = [1, 1.5]",
             "path.frequencies[1] = 1.5: must be a whole number",
         ),
-        (f"{ARM}[path]\nkind = 'waypoints'\npoints = [[0, 0], [1, 0]]", "path.duration, times or bounds of velocity"),
+        (f"{ARM}[path]\nkind = 'waypoints'\npoints = [[0, 0], [1, 0]]", "path: has no duration: give a duration"),
         (f"path = []\n{ARM}", "path = []: must have at least one path"),
         (f"{ARM}[[path]]\nkind = 'circle'\n[[path]]\nkind = 'circle'\nradius = 'a'", "path[1].radius = 'a': must be"),
         (f"{ARM}[[path]]\nkind = 'circle'\n[[path]]\nkind = 'circle'\nradius = 0", "path[1].radius = 0: must be"),

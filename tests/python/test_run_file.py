@@ -253,7 +253,7 @@ NO_PATHS = {
     "wrong numbers": ({"kind": "circle", "radius": -1.0, "duration": 1.0}, "path.radius = -1: must be positive"),
     "wrong kinds": ({"kind": "circle", "radius": "x", "duration": 1.0}, "path.radius = 'x': must be a number"),
     "too many": ({"kind": "circle", "radius": 1.0, "duration": 1.0, "x": 1}, "path.x: is not a key of circle"),
-    "too few": ({"kind": "circle", "radius": 1.0}, "path.duration: is missing"),
+    "too few": ({"kind": "circle", "duration": 1.0}, "path.radius: is missing"),
     "no table": (7, "path = 7: must be a table"),
     "no array": ({"kind": "waypoints", "points": [[0], [1, 1]], "duration": 1}, "path.points = .*: must be real"),
     "no number": ({"kind": "circle", "radius": {"float": "__import__('os')"}, "duration": 1.0}, "must be a number"),

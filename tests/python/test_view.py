@@ -269,6 +269,20 @@ def test_the_fastest_motion_stays_the_fastest_under_another_scheme():
         shown.close()
 
 
+def test_a_kept_path_without_a_duration_is_shown():
+    arm, path = fp.SerialArm.preset("panda"), fp.Circle(0.1).in_plane("yz")
+    run = fp.track(arm, path, fp.MVN(k=5), [0, -0.3, 0, -2.2, 0, 2, 0.785], keep_path=True)
+    shown = viewer_module.Viewer(run, port=0, open_browser=False)
+    try:
+        shown.time = 100.0
+        assert shown.time == pytest.approx(run.t[-1])
+        shown.scheme = fp.WMVN([5, 1, 1, 1, 1, 1, 1], k=5)
+        assert shown.run.path == path
+        assert shown.run.max_error() < 1e-6
+    finally:
+        shown.close()
+
+
 def test_gains_beyond_a_slider_extend_its_range(viewer):
     viewer.scheme = fp.FPBM(0.6, [0.01, 1, 1, 400], 300, 9000)
     sliders = viewer._controls._sliders

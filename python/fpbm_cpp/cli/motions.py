@@ -33,10 +33,11 @@ also_option = click.option(
     """
     fpbm-cpp track panda
     fpbm-cpp track planar:1,1,1,1 --radius 0.45 --weights 1,2,3,4 --k1 1 --k2 1 --out circle
-    fpbm-cpp track iiwa14 --path lissajous --task pose --scheme man --save-job job.toml
-    fpbm-cpp track two_pandas --task left_tip --task right_tip --radius 0.06
+    fpbm-cpp track iiwa14 --path lissajous --at-speed 0.1 --at-acceleration 0.5 --scheme man --save-job job.toml
+    fpbm-cpp track two_pandas --task left_tip --task right_tip --radius 0.06 --keep-path
     fpbm-cpp track --job job.toml --scheme fpbm --hold 5""",
     clear=True,
+    keep=True,
 )
 @out_option
 @dark_option
@@ -51,6 +52,9 @@ def track(request: Request, out: Path | None, dark: bool, also: tuple[str, ...])
 
     The arm keeps its joint limits, as in fpbm_cpp.track. With --no-limits, it moves by the scheme alone, as in
     fpbm_cpp.simulate. With --job, it keeps limits if the job has limits, or with --limits.
+
+    With --keep-path, the tip stays on the path, as in fpbm_cpp.track(keep_path=True). The scheme is then at velocity
+    level, by default mvn.
 
     With --out, the folder gets run.png, run.npz, which fpbm_cpp.load reads, and job.toml, which contains all options.
     If the motion stops early, the exit status is 1, and the motion before the stop is still printed and written.
@@ -85,11 +89,12 @@ def fastest(
 ) -> None:
     """Move an arm along a path in the least time within its limits, and print key figures of the motion.
 
-    The tip stays on the path, as in fpbm_cpp.fastest: the duration is a result, and the duration, the time law and the
-    hold of a job have no effect. The scheme is at velocity level, by default mvn. For ARM and the options, see track.
+    The tip stays on the path, as in fpbm_cpp.fastest: the duration is a result. The duration, the time law, the
+    constant speed, the hold and the reserve of a job have no effect. The scheme is at velocity level, by default mvn.
+    For ARM and the options, see track. The written job.toml keeps the path.
     """
     _require_out(out, also)
-    motion = request.motion(request.scheme_of_velocity, at_rest=True, limited=True)
+    motion = request.motion(at_rest=True, limited=True, keep_path=True)
     with request.plain():
         run = motion.fastest(tip_speed=tip_speed, tip_acceleration=tip_acceleration)
     _report(request, motion, run, out, dark, also)
@@ -125,6 +130,7 @@ def _report(request: Request, motion: Motion, run: Run, out: Path | None, dark: 
     fpbm-cpp compare --job job.toml --null-damping 0""",
     kind=False,
     clear=True,
+    keep=True,
 )
 @click.option("--schemes", metavar="NAMES", help=f"Schemes, separated by commas; default: {', '.join(SCHEMES)}.")
 @out_option
@@ -164,6 +170,7 @@ def compare(request: Request, schemes: str | None, out: Path | None, dark: bool)
     fpbm-cpp view my_arm.urdf --tip tool0 --path lissajous --port 9000
     fpbm-cpp view --job job.toml --no-browser""",
     clear=True,
+    keep=True,
 )
 @port_option
 @browser_option

@@ -30,7 +30,14 @@ SAVED = "Write the job, including all defaults, to a TOML file."
 METAVARS = {"tip": "LINK", "base": "LINK", "in_plane": "AXES", "file": "FILE", "srdf": "FILE"}
 WORDS = {"task": ("position", "pose")}  # Words that shells complete; a job with tasks has further names.
 # Defaults that depend on the arm.
-TAKEN = {"base": "the root", "q0": "a ready posture", "qd0": "at rest", "in_plane": "yz in space", "weights": "ones"}
+TAKEN = {
+    "base": "the root",
+    "q0": "a ready posture",
+    "qd0": "at rest",
+    "duration": "10, but none for a kept path",
+    "in_plane": "yz in space",
+    "weights": "ones",
+}
 
 
 def _value(text: str) -> Any:
@@ -77,11 +84,12 @@ MARGIN = "Least distance between two shapes."
 PER_LINK = "Largest number of capsules per link."
 
 LIVE = {"q0"}  # Keys of a run that apply without a path.
+KEPT = {"keep_path", "reserve"}  # Keys of a run that keeps its path.
 
 
-def _job_options(kind: bool, path: bool, clear: bool) -> Iterator[JobOption]:
-    """Options of a job, with or without the kind of the scheme, the path and the clearance. Without a path, the limits
-    are always kept.
+def _job_options(kind: bool, path: bool, clear: bool, keep: bool) -> Iterator[JobOption]:
+    """Options of a job, with or without the kind of the scheme, the path, the clearance, and keeping the path. Without
+    a path, the limits are always kept.
     """
     urdf = known("arm", "urdf")
     yield _option("arm", "tip", replace(urdf["tip"], help="Tip link of a URDF file."))
@@ -91,7 +99,7 @@ def _job_options(kind: bool, path: bool, clear: bool) -> Iterator[JobOption]:
         if key == "task":
             words = Word(WORDS["task"])
             yield JobOption("run", key, "--task", multiple=True, type=words, metavar="TASK", help=TASK)
-        elif path or key in LIVE:
+        elif keep if key in KEPT else path or key in LIVE:
             yield _option("run", key, declared)
     for section, usual in FREE.items():
         if section == "path" and not path:
@@ -125,6 +133,9 @@ def limit_options() -> Iterator[JobOption]:
 
 def _option(section: str, key: str, declared: Parameter, prefix: str = "", of: Sequence[str] = ()) -> JobOption:
     """The option for a key. of: the kinds that have the key, if only a few have it."""
+    flag = f"--{prefix}{key.replace('_', '-')}"
+    if declared.type is bool:
+        return JobOption(section, key, f"{flag}/--no-{flag[2:]}", help=declared.help)
     several = bool(declared.shape)
     kind: Any = _value if several or declared.type in (float, int) else str
     words = WORDS.get(key, declared.choices)
@@ -134,17 +145,16 @@ def _option(section: str, key: str, declared: Parameter, prefix: str = "", of: S
     taken = TAKEN.get(key) or ",".join(f"{x:g}" if isinstance(x, float) else str(x) for x in usual)
     extra = "; ".join(filter(None, [declared.unit, f"default: {taken}" if taken else ""]))
     text = f"{', '.join(of)}: {declared.help}" if of else declared.help
-    flag = f"--{prefix}{key.replace('_', '-')}"
     return JobOption(section, key, flag, type=kind, metavar=metavar, help=f"{text}  [{extra}]" if extra else text)
 
 
 def motion_command(
-    short_help: str, examples: str, *, kind: bool = True, path: bool = True, clear: bool = False
+    short_help: str, examples: str, *, kind: bool = True, path: bool = True, clear: bool = False, keep: bool = False
 ) -> Callable[[Callable[..., None]], Plain]:
     """Decorator for a command that calls its function with a Request from ARM, --job, --save-job and the options."""
 
     def make(function: Callable[..., None]) -> Plain:
-        ours = list(_job_options(kind, path, clear))
+        ours = list(_job_options(kind, path, clear, keep))
 
         @click.argument("arm", required=False, metavar="ARM")
         @click.option("--job", type=PLACE, metavar="FILE", help="TOML file of a job, which the options override.")
@@ -201,13 +211,21 @@ class Request:
         """The scheme for a command that needs a scheme at velocity level; None if the job or the options have one."""
         return None if self.chosen else "wmvn" if "weights" in self.table.get("scheme", {}) else "mvn"
 
-    def motion(self, kind: str | None = None, *, at_rest: bool = False, limited: bool = False) -> Motion:
+    def motion(
+        self, kind: str | None = None, *, at_rest: bool = False, limited: bool = False, keep_path: bool = False
+    ) -> Motion:
         """The motion, with this kind of scheme if given.
 
         at_rest: whether the motion must start at rest. limited: whether limits are kept without a request, unless the
-        option --no-limits is given.
+        option --no-limits is given. keep_path: whether the path is kept without a request.
         """
         table = {"limits": {}, **self.table} if limited and not self.free else self.table
+        run = table.get("run", {})
+        if keep_path and isinstance(run, dict):
+            run = {"reserve": known("run")["reserve"].usual, **run, "keep_path": True}
+            table = {**table, "run": run}
+        if kind is None and isinstance(run, dict) and run.get("keep_path"):
+            kind = self.scheme_of_velocity
         for section in ("clearance", "bounds"):
             if section in table and "clearance" not in self.sections:
                 command = click.get_current_context().info_name

@@ -26,7 +26,7 @@ from ..motion.run import Run
 from ..motion.run_data import Paths
 from ..motion.simulation import simulate, task_and_paths, track
 from ..parameter import REQUIRED
-from ..paths import PATH_OPTIONS, Circle, Path
+from ..paths import DURATION, PATH_OPTIONS, Circle, Path
 from ..robots import Robot
 from ..schemes import MVN, Scheme
 from ..skeleton import length
@@ -122,7 +122,9 @@ class Motion:
         return keywords if self.limits is None else {**keywords, "null_damping": 0.0}
 
     def of_one_arm(self) -> tuple[Arm, Path]:
-        """Arm and path, for sweep() and tune(). Raises JobError for a robot or for several paths."""
+        """Arm and path, for sweep() and tune(). Raises JobError for a robot, for several paths, or for a kept path."""
+        if self.options.keep_path:
+            raise JobError(wrong("run.keep_path", True, ": must not be given here: use track to keep a path"))
         if isinstance(self.arm, Robot) or isinstance(self.path, Mapping):
             raise JobError(wrong("arm", None, ": must be an arm on one path: use track for a robot or several paths"))
         return self.arm, self.path
@@ -141,6 +143,7 @@ class Motion:
         keywords = {**self.keywords, "qd0": self.options.qd0}
         with job_errors():
             if self.limits is not None:
+                keywords |= {"keep_path": self.options.keep_path, "reserve": self.options.reserve}
                 return track(self.arm, self.path, self.scheme, self.q0, bounds=self.bounds, **keywords)
             del keywords["limits"]
             return simulate(self.arm, self.path, self.scheme, self.q0, partial=True, **keywords)
@@ -182,6 +185,8 @@ def prepare(job: Table) -> Motion:
     if "clearance" in full:
         bounds = (make("clearance", full["clearance"], arm), *bounds)
     motion = Motion(full, taken(job, full), arm, path, scheme, options, stack, limits, bounds)
+    if options.keep_path:  # The motion has its own duration, and its checks need the joint path.
+        return motion
     with job_errors():
         try:
             _, kind, followed, tasks = task_and_paths(path, options.task, stack)
@@ -195,15 +200,23 @@ def prepare(job: Table) -> Motion:
 def filled(job: Table, arm: Arm | Robot) -> Table:
     """The job with the defaults for missing keys."""
     job = with_tasks(job, arm)
+    said = job.get("run", {})
+    run = _filled("run", said)
+    keep_path = run.get("keep_path", False)
+    if "reserve" in said and "keep_path" not in said:
+        raise JobError(wrong("run.reserve", said["reserve"], ": has no effect without keep_path: give keep_path"))
+    if not keep_path:
+        del run["reserve"]
     path = job.get("path", {"kind": FREE["path"]})
-    pieces = _filled_paths(path, arm)
+    timed = not keep_path or any("duration" in piece for each in _by_task(path).values() for piece in _pieces(each))
+    fill = partial(_filled_paths, path, arm, timed=timed)
+    pieces = fill()
     gains = {"k1": 0.0, "k2": 0.0} if "task" in job else {}  # Each task has its own gains.
     scheme = dict(job.get("scheme", {"kind": FREE["scheme"]}))
     gains = {key: gain for key, gain in gains.items() if key in known("scheme", scheme.get("kind"))}
     scheme = _filled("scheme", {**gains, **scheme})
     if "weights" in known("scheme", scheme["kind"]):
         scheme = {"weights": [1.0] * arm.dof, **scheme}
-    run = _filled("run", job.get("run", {}))
     stack = make("task", job["task"]) if "task" in job else None
     if stack is None and isinstance(arm, Robot):
         missing = ": is missing: a robot needs [[task]] tables, or --task FRAME on the command line"
@@ -211,17 +224,16 @@ def filled(job: Table, arm: Arm | Robot) -> Table:
     if stack is None and run["task"] not in TIP_TASKS:
         raise JobError(not_one_of("run.task", run["task"], TIP_TASKS))
     with job_errors():
-        run["task"], kind, *_ = task_and_paths(make("path", pieces, arm), job.get("run", {}).get("task"), stack)
+        run["task"], kind, *_ = task_and_paths(make("path", pieces, arm), said.get("task"), stack)
         if "q0" not in run:
             preset = job["arm"].get("name")
             run["q0"] = list(READY.get(preset) or ready(arm, kind, stack))
     limits = make("limits", job.get("limits", {}), arm)
-    pieces = _scaled(path, pieces, arm, limits, run if stack is None else None)
+    pieces = _scaled(fill, pieces, arm, limits, run if stack is None else None)
     full = {**job, "path": pieces, "scheme": scheme, "run": run}
-    if "bounds" in job:
+    if keep_path or "bounds" in job or "clearance" in job:
         full["limits"] = job.get("limits", {})  # Without limits, no arm can stop in time.
     if "clearance" in job:
-        full["limits"] = job.get("limits", {})
         full["clearance"] = with_kind(job["clearance"])
         if full["clearance"]["kind"] == "urdf":
             keys = {"urdf": ("tip", "base"), "robot": ("base", "locked", "tips")}.get(job["arm"]["kind"], ())
@@ -287,46 +299,49 @@ def _by_task(path: Any) -> dict[str, Any]:
     return path if is_by_task(path) else {"": path}
 
 
-def _filled_paths(said: Any, arm: Arm | Robot, radius: float | None = None) -> Any:
+def _filled_paths(said: Any, arm: Arm | Robot, radius: float | None = None, *, timed: bool = True) -> Any:
     """The paths with their defaults, and this radius for each circle of which the job does not say the radius.
 
-    For an arm in space, a planar path is placed in the yz plane.
+    For an arm in space, a planar path is placed in the yz plane. timed: whether the defaults include a duration.
     """
     if isinstance(said, list):
-        return [_filled_paths(piece, arm, radius) for piece in said]
+        return [_filled_paths(piece, arm, radius, timed=timed) for piece in said]
     if is_by_task(said):
-        return {task: _filled_paths(each, arm, radius) for task, each in said.items()}
+        return {task: _filled_paths(each, arm, radius, timed=timed) for task, each in said.items()}
     given = {"radius": radius, **said} if radius is not None and said["kind"] == Circle.kind else said
     whole = _filled("path", given)
+    if "duration" not in said and (not timed or "at_speed" in said):
+        whole.pop("duration", None)
     if "path" in whole:
-        whole["path"] = _filled_paths(whole["path"], arm, radius)
+        whole["path"] = _filled_paths(whole["path"], arm, radius, timed=timed)
     if isinstance(arm, PlanarArm) or "in_plane" in whole:
         return whole
     shape = make("path", {key: whole[key] for key in whole if key not in PATH_OPTIONS})
-    return {"in_plane": "yz", **whole} if len(shape.sample(0.0)[0]) == 2 else whole
+    return {"in_plane": "yz", **whole} if len(shape._lasting(1.0).sample(0.0)[0]) == 2 else whole
 
 
-def _scaled(said: Any, full: Any, arm: Arm | Robot, limits: JointLimits, run: Table | None) -> Any:
-    """The paths with the default radius of circles: CIRCLE times the arm's length.
+def _scaled(fill: Callable[..., Any], full: Any, arm: Arm | Robot, limits: JointLimits, run: Table | None) -> Any:
+    """The paths with the default radius of circles: CIRCLE times the arm's length. fill(radius): the paths.
 
     The radius is halved until the tip can follow the path, unless HALVINGS do not suffice. run: the options of the run;
     None for a stack, whose paths are not tried.
     """
     radius = float(f"{CIRCLE * length(arm, np.zeros(arm.dof)):.1g}")
-    if radius == 0.0 or _filled_paths(said, arm, radius) == _filled_paths(said, arm, 2 * radius):
+    if radius == 0.0 or fill(radius) == fill(2 * radius):
         return full
     if run is not None:
         for halvings in range(HALVINGS + 1):
-            paths = _filled_paths(said, arm, radius / 2**halvings)
+            paths = fill(radius / 2**halvings)
             if _can_follow(arm, make("path", paths, arm), limits, run):
                 return paths
-    return _filled_paths(said, arm, radius)
+    return fill(radius)
 
 
 def _can_follow(arm: Arm | Robot, path: Path, limits: JointLimits, run: Table) -> bool:
     """Whether MVN follows the path within bounds on position, velocity and acceleration. If the job is wrong: true."""
     try:
-        dt = min(TRIAL_STEP, path.duration / TRIAL_STEPS)
+        path = path if path._is_timed() else path._lasting(DURATION.usual)
+        dt = min(TRIAL_STEP, (path._duration() or 0.0) / TRIAL_STEPS)
         found = simulate(arm, path, MVN(k=TRIAL_GAIN), run["q0"], dt=dt, task=run["task"], partial=True)
     except ValueError:
         return True  # prepare() reports the error.

@@ -35,6 +35,15 @@ class RunOptions(Data):
     qd0: OptionalArrayField = parameter("Joint velocities at the start.", default=None, shape="(n,)", unit="rad/s")
     dt: float = parameter("Time step.", POSITIVE, default=1e-3, unit="s")
     hold: float = parameter("Time at the end of the path.", NOT_NEGATIVE, default=0.0, unit="s")
+    keep_path: bool = parameter(
+        "Whether the tip stays on the path if the path is faster than the limits allow; keeps joint limits. Without a "
+        "duration, the motion is as fast as possible.",
+        default=False,
+        usual=None,
+    )
+    reserve: float = parameter(
+        "For keep_path: reserve of the duration, relative to the least duration.", NOT_NEGATIVE, default=0.05
+    )
 
 
 # Kinds of each section. run and limits have one kind each, which is not in the file.

@@ -45,8 +45,9 @@ def fastest(
 
     The scheme gives the joint positions along the whole path. The clock of the path then minimises the duration within
     the bounds on velocity, acceleration and jerk of all joints, from rest to rest (docs: Paths in the least time). The
-    durations and time laws of shapes have no effect: only the geometry counts, and the speed of a path at_speed(), as a
-    bound. Between the parts of a Sequence, the arm stops. run.saturated and run.bound_ratios() show which bounds limit the motion.
+    durations and time laws of shapes have no effect: only the geometry counts, and paths need no duration. The speed
+    of a path at_speed() is a bound. Between the parts of a Sequence, the arm stops. run.saturated and
+    run.bound_ratios() show which bounds limit the motion.
 
     Parameters
     ----------
@@ -67,7 +68,7 @@ def fastest(
         If an argument is out of range, or the scheme cannot follow the path within the ranges of the joints and within
         the bounds. The message says at which fraction of the path.
     """
-    require_motion(arm, path, scheme)
+    require_motion(arm, path, scheme, timed=False)
     if scheme.level != "velocity":
         raise wrong(
             "scheme", scheme, f" = {scheme!r:.80}: must be at velocity level, for example MVN() or WMVN(weights)"

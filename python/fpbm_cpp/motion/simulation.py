@@ -12,7 +12,7 @@ from ..arms import Arm
 from ..bounds import Bound, bounds_of
 from ..errors import ResolutionError, not_one_of, require, wrong
 from ..joints import JointLimits, limits_of
-from ..paths import Path
+from ..paths import Path, are_timed
 from ..robots import Robot
 from ..schemes import Scheme
 from ..tasks import PoseTask, Stack
@@ -150,7 +150,7 @@ def track(
         laws of shapes have no effect, except that the motion is not shorter than the path. The speed of a path at_speed()
         is a bound. Nearly singular postures are not damped: the bounds on the joints limit the motion there.
     """
-    require_motion(arm, path, scheme)
+    require_motion(arm, path, scheme, timed=not keep_path)
     options = motion_options(arm, dt, hold, qd0)
     followed_paths, *kept = kept_paths(path, task) if keep_path else (path, inf, 0.0)
     name, kind, followed, tasks = task_and_paths(followed_paths, task, stack)
@@ -173,16 +173,29 @@ def track(
     return make_run(outcome, q0, arm, path, scheme, name, options, track)
 
 
-def require_motion(arm: object, path: object, *schemes: object) -> None:
-    """Raise ParameterError unless the arguments of a motion are an arm, a path and schemes."""
+def require_motion(arm: object, path: Any, *schemes: object, timed: bool = True) -> None:
+    """Raise ParameterError unless the arguments of a motion are an arm, a path and schemes.
+
+    timed: whether each path must have a duration.
+    """
     require("arm", arm, (Arm, Robot), "an arm or a Robot")
     require("path", path, (Path, Mapping), "a path, or a dictionary of paths by task name")
+    for name, each in by_task(path).items():
+        require(f"path[{name!r}]", each, Path, "a path")
+        if timed:
+            each._require_duration()
     for scheme in schemes:
         require("scheme", scheme, Scheme, "a scheme")
 
 
+def by_task(path: Paths) -> Mapping[str, Path]:
+    """Paths by task name; the name of a single path is ''."""
+    return path if isinstance(path, Mapping) else {"": path}
+
+
 def kept_paths(path: Paths, task: str | None) -> tuple[Paths, float, float]:
-    """Geometry of paths that a motion keeps, bound on the speed of the tip [m/s], and least duration [s]."""
+    """Paths for a motion that keeps them, bound on the speed of the tip [m/s], and least duration [s]: Path._kept()."""
+    are_timed({f"path[{name!r}]": each for name, each in by_task(path).items()})
     if isinstance(path, Path):
         return path._kept()
     kept = {name: each._kept() for name, each in path.items()}
@@ -211,9 +224,8 @@ def task_and_paths(path: Paths, task: str | None, stack: Stack | None) -> tuple[
         return name, kind, path, None if stack is None else StackTasks(stack, name)
     if stack is None or not path:
         raise wrong("path", path, f" = {path!r:.80}: must be one path, or paths by task names of a stack")
-    for each, followed in path.items():
+    for each in path:
         path_task(each, stack)
-        require(f"path[{each!r}]", followed, Path, "a path")
     name = next(iter(path)) if task is None else task
     if name not in path:
         raise not_one_of("task", name, path)

@@ -168,7 +168,7 @@ def _against_man(results: Sequence[Result], measure: Callable[[Run], float]) -> 
 def _moved_on_hold(paper: Paper, scheme: Scheme) -> float:
     """Largest joint motion while the target is held after T [rad]."""
     run = paper.simulate("circle", scheme, hold=HOLD)
-    start = round(run.paths[run.task].duration / DT)
+    start = len(run.t) - 1 - round(HOLD / DT)
     return float(np.abs(run.q[start:] - run.q[start]).max())
 
 

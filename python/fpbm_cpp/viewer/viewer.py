@@ -41,9 +41,10 @@ class Viewer(Page):
         self._asked: tuple[Scheme, bool] | None = None  # The shown choice; None after a failed choice on the page.
         gui = self._server.gui
         is_fastest = run.function is fastest
-        duration = max(path.duration for path in run.paths.values()) + run.options.get("hold", 0.0)
-        if is_fastest:
+        if is_fastest or run.options.get("keep_path"):
             duration = float(run.t[-1])
+        else:
+            duration = max(path._duration() or 0.0 for path in run.paths.values()) + run.options.get("hold", 0.0)
         with self._lock:  # The first events of the page wait until all parts exist.
             self._readout = Readout(gui)
             self._player = Player(gui, duration, self._draw)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -18,8 +19,8 @@ namespace fpbm {
 /// example a Clearance, TaskBounds and SpeedBounds. Without arguments, nothing is restricted.
 ///
 /// A tick is executed only if all bounds accept the stopping trajectory after the tick. Otherwise the arm continues the
-/// stopping trajectory of the tick before. By induction from the start, the bounds hold at every tick. The rows leave
-/// slack for accepts(), so that the arm slides along a bound instead of stopping before the bound.
+/// stopping trajectory of the tick before: by induction, the bounds hold at every tick. The rows leave slack for
+/// accepts(), so that the arm slides along a bound instead of stopping before the bound.
 ///
 /// A bound of your own has these members (docs/architecture.md, "Add a bound"):
 ///
@@ -28,13 +29,11 @@ namespace fpbm {
 ///   empty()                    whether nothing is bounded
 ///   require(q)                 throws std::invalid_argument if the posture q violates the bound
 ///   rows(next, rows)           adds g·u ≤ b for the next motion (NextMotion), at most kRows rows
-///   accepts(from, stop)        whether the tick and the stop after the tick, from the state `from`, keep the bound
-///                              (Stop); true for a bound without a certificate
-///   gaps(q, range, f)          for InverseKinematics only: calls f(gap, gradient) for each gap below the range in q
-///   speed_ratio(q, qd)         for fastest() only, of a bound on speeds: largest ratio of a speed to its bound
+///   accepts(from, stop)        whether the tick and the Stop after the tick keep the bound; true without a certificate
+///   gaps(q, range, f)          for InverseKinematics and kept paths: calls f(gap, gradient) for each gap below the
+///   range speed_ratio(q, qd)         for fastest() only, of a bound on speeds: largest ratio of a speed to its bound
 ///
-/// rows() and accepts() are noexcept, and rows() is called first in each tick. All state of a bound is allocated at
-/// construction.
+/// rows() and accepts() are noexcept, and rows() is called before accepts(). A bound allocates at construction only.
 template <typename... Each>
 class Bounds {
  public:
@@ -95,9 +94,11 @@ class Bounds {
   [[nodiscard]] Status status([[maybe_unused]] std::uint32_t active) const noexcept {
     Status status = Status::kSlowed;
     std::size_t i = 0;
+    Eigen::Index k = 0;
     each([&]([[maybe_unused]] const auto& bound) noexcept {
-      const std::uint32_t mask = below(ends_[i]) & ~(i > 0 ? below(ends_[i - 1]) : std::uint32_t(0));
-      if ((active & mask) != 0) status = worse(status, std::decay_t<decltype(bound)>::kStatus);
+      for (; k < ends_[i]; ++k) {
+        if (((active >> k) & 1U) != 0) status = worse(status, std::decay_t<decltype(bound)>::kStatus);
+      }
       ++i;
     });
     return status;
@@ -124,18 +125,17 @@ class Bounds {
     });
   }
 
-  /// The least gap below the range in the posture q, or the range, of bounds that have gaps.
+  /// Sum of range − gap over the gaps below the range in the posture q, of bounds that have gaps.
   template <typename JointVector>
-  [[nodiscard]] auto least_gap(const JointVector& q, typename JointVector::Scalar range) noexcept {
-    const auto take = [&range](auto gap, const auto&) noexcept {
-      if (gap < range) range = gap;
-    };
+  [[nodiscard]] auto closeness(const JointVector& q, typename JointVector::Scalar range) noexcept {
+    typename JointVector::Scalar sum(0);
+    const auto add = [&](auto gap, const auto&) noexcept { sum += range - gap; };
     each([&](auto& bound) noexcept {
-      if constexpr (kHas<std::decay_t<decltype(bound)>, bound_member::Gaps, JointVector, decltype(take)>) {
-        if (!bound.empty()) bound.gaps(q, range, take);
+      if constexpr (kHas<std::decay_t<decltype(bound)>, bound_member::Gaps, JointVector, decltype(add)>) {
+        if (!bound.empty()) bound.gaps(q, range, add);
       }
     });
-    return range;
+    return sum;
   }
 
   /// Largest ratio of a speed to its bound at the joint velocities qd in the posture q, of bounds on speeds.
@@ -144,19 +144,16 @@ class Bounds {
     typename JointVector::Scalar largest(0);
     each([&](auto& bound) noexcept {
       if constexpr (kHas<std::decay_t<decltype(bound)>, bound_member::SpeedRatio, JointVector>) {
-        const auto ratio = bound.speed_ratio(q, qd);
-        if (ratio > largest) largest = ratio;
+        largest = std::max(largest, bound.speed_ratio(q, qd));
       }
     });
     return largest;
   }
 
-  /// Sum of the distances to shapes that are near [m], of bounds that know shapes. While the arm is at rest, the sum
-  /// changes only if obstacles move.
+  /// Sum of the distances to near shapes [m]. While the arm is at rest, the sum changes only if obstacles move.
   [[nodiscard]] auto near_distance_sum() const noexcept {
     return (0.0 + ... + of_shapes<Each>([](const auto& bound) { return bound.near_distance_sum(); }, 0.0));
   }
-  /// Whether null-space motion away from shapes is enabled.
   [[nodiscard]] bool moves_away() const noexcept {
     return (of_shapes<Each>([](const auto& bound) { return bound.moves_away(); }, false) || ...);
   }
@@ -191,10 +188,6 @@ class Bounds {
     } else {
       return other;
     }
-  }
-  /// The bits below bit `end`.
-  [[nodiscard]] static std::uint32_t below(Eigen::Index end) noexcept {
-    return end < 32 ? (std::uint32_t(1) << end) - std::uint32_t(1) : ~std::uint32_t(0);
   }
 
   std::tuple<Each...> each_;

@@ -17,19 +17,15 @@
 
 namespace fpbm {
 
-/// Moves an arm tick by tick with a scheme, within its joint limits and through singular postures, until the arm is at
-/// rest (docs/realtime.md).
+/// Moves an arm tick by tick with a scheme, within its joint limits and through singular postures (docs/realtime.md).
 ///
 /// tick() advances the tracker's own state (docs/tick.md, A tick). The result of tick() is a command for an arm
 /// that accepts positions or velocities and follows them closely. resolve_measured() computes the acceleration for a
 /// measured state, for a torque controller. Never pass a measured state to tick(): the feedback would act twice, and
 /// noise would enter the command.
 ///
-/// A tick has one motion: the motion of the scheme in the middle of the tick, within the limits (Limiter) and within
-/// further bounds: a Clearance, TaskBounds, SpeedBounds.
-///
-/// After construction, no function allocates, throws, locks, does I/O or loops without a bound, for any input. The same
-/// inputs give the same bits. If no motion can be computed, the arm brakes.
+/// After construction, no function allocates, throws, locks, does I/O or loops without a bound. The same inputs give
+/// the same bits. If no motion can be computed, the arm brakes.
 template <typename Arm, typename Space, typename Scheme, typename Bounds_ = Bounds<>>
 class Tracker {
  public:
@@ -46,9 +42,8 @@ class Tracker {
   using Options = TrackerOptions<Scalar>;
 
   /// Starts from a state, or at rest, within the limits of the arm or given limits. Throws std::invalid_argument if an
-  /// option is out of range, the scheme does not suit the arm, its gains are too high for the tick, a limit is missing
-  /// (Limits), or the state violates a limit and options.recover_start is false. If the scheme has no damping, the
-  /// tracker sets the damping of the options.
+  /// option is out of range, the scheme does not suit the arm or the tick, a limit is missing (Limits), or the state
+  /// violates a limit and options.recover_start is false. The damping of the options is for schemes without damping.
   Tracker(const Arm& arm, Space, const Scheme& scheme, const JointState& start, const Options& options,
           const Limits<kLevel, N, Scalar>& limits)
       : Tracker(arm, Space{}, scheme, start, options, limits, filled<JointVector>(start.q.size())) {}
@@ -85,7 +80,7 @@ class Tracker {
   /// TargetFilter, which continues. For a stack, pass a source for each task in the order of the stack, or References.
   template <typename... Sources>
   Result tick(Sources&... sources) noexcept {
-    (look_ahead(sources, state_.stopping, state_.bounds, state_.tick.joints.q), ...);
+    (prepare_source(sources, state_.speed, state_.stopping, state_.bounds, state_.tick.joints.q), ...);
     const Result result = advance(references_of(Space{}, state_.dt(), sources...));
     (advance_source(sources, state_.dt(), state_.stopping, result.path_fraction), ...);
     return result;
@@ -94,7 +89,6 @@ class Tracker {
   /// One tick with references.
   Result advance(const References& references) noexcept {
     Result result = state_.idle(state_.tick.joints);
-    state_.most_path_fraction = kLevel == Level::kVelocity ? references.most_path_fraction : Scalar(0);
     const auto desired = desire(arm_, scheme_, state_, references, result);
     finish_tick(desired, state_.rows(desired.u), result);
     return result;
@@ -135,6 +129,10 @@ class Tracker {
     return result;
   }
 
+  /// Sets the speed of the sources of the following ticks: set_speed() of each PathFollower and TargetFilter, for an
+  /// operator's slider. If the fraction is not in (0, 1], returns false without an effect.
+  bool set_speed(Scalar fraction) noexcept { return state_.set_speed(fraction); }
+
   /// Brings every joint to rest as fast as the limits allow, for any reference, until resume() is called. With
   /// options.keep_first_level, the joints stop in the null space of the first level.
   void stop() noexcept { state_.stopping = true; }
@@ -147,8 +145,8 @@ class Tracker {
   [[nodiscard]] const Arm& arm() const noexcept { return arm_; }
   /// Bits of the continuous joints.
   [[nodiscard]] JointBits continuous() const noexcept { return state_.continuous; }
-  /// Enables or disables level k of a stack, counted from 0. The first level is always enabled. The commands stay
-  /// within all bounds. If there is no lower level k, returns false without an effect.
+  /// Enables or disables level k of a stack, counted from 0; commands stay within all bounds. The first level is always
+  /// enabled. If there is no lower level k, returns false without an effect.
   bool enable(int k, bool on) noexcept {
     static_assert(kIsProduct<Space>, "only a stack has levels to enable");
     if (!arm_.enable(k, on)) return false;
@@ -156,8 +154,7 @@ class Tracker {
     return true;
   }
 
-  /// Stack::reorder() of levels of the same type: level k becomes the former level order[k], with its references. The
-  /// integrals start at zero. The commands stay within all bounds.
+  /// Stack::reorder() of levels of the same type: level k becomes the former level order[k], with its references.
   template <typename Order>
   bool reorder(const Order& order) noexcept {
     static_assert(kIsProduct<Space>, "only a stack has levels to reorder");
@@ -168,7 +165,7 @@ class Tracker {
     return true;
   }
 
-  /// The bounds. Bounds::get() returns the bound of a type, for example the Clearance, whose obstacles can move.
+  /// Bounds::get() returns the bound of a type, for example the Clearance, whose obstacles can move.
   [[nodiscard]] Bounds_& bounds() noexcept { return state_.bounds; }
   [[nodiscard]] const Bounds_& bounds() const noexcept { return state_.bounds; }
 
@@ -189,13 +186,8 @@ class Tracker {
     const bool damped = result.status == Status::kDamped;
     const JointVector u = limit(state_, desired, rows, result);
     JointState next = prove(state_, u, result);
-    if (state_.on_path()) {
-      result.path_fraction = path_fraction(desired, state_.tick.motion_to(next), state_.most_path_fraction);
-    }
+    report_path(state_, desired, rows, next, result);
     account(state_, desired, std::move(next), damped, result);
-    if (result.path_fraction < Scalar(1)) {
-      result.status = worse(result.status, rows.admit(desired.u) ? Status::kSlowed : Status::kBlocked);
-    }
   }
 
   Arm arm_;

@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
-#include <utility>
 
 #include "fpbm/core/detail/validation.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/model/kinematics.hpp"
-#include "fpbm/path/detail/timed_path.hpp"
-#include "fpbm/path/fastest_clock.hpp"
+#include "fpbm/path/detail/fastest_clock.hpp"
 #include "fpbm/path/spline.hpp"
 #include "fpbm/simulate/detail/anchored_path.hpp"
 #include "fpbm/simulate/detail/joint_path.hpp"
@@ -82,11 +79,6 @@ template <int N, typename Path, typename Kept>
   return clock;
 }
 
-/// Slows a clock so that the motion lasts at least `duration` [s], and a multiple of dt [s].
-inline void stretch_to(FastestClock& clock, double duration, double dt) {
-  if (duration > clock.duration()) clock.stretch(std::ceil(duration / dt - 1e-9) * dt);  // Without round-off errors.
-}
-
 /// Calls `record(const Sample&)` for each time of a motion along a joint path with a clock, from the start of the path.
 template <typename Arm, typename Path, typename Recorder>
 RolloutResult<Arm::kDof> play(const Arm& arm, const Path& path, const Spline<Arm::kDof>& joints,
@@ -117,36 +109,6 @@ RolloutResult<Arm::kDof> play(const Arm& arm, const Path& path, const Spline<Arm
   return result;
 }
 
-/// The plan of a motion that a PathFollower keeps, with a clock for joint positions along the path.
-template <int N, typename Kept>
-[[nodiscard]] std::shared_ptr<const KeptMotion> kept_motion(const Spline<N>& joints, const FastestClock& clock,
-                                                            const JointLimits<N>& limits, Kept& bounds, double dt) {
-  constexpr double kStep = 0.01;  // [s]: at 2 rad/s and 15 rad/s², interpolated postures are exact to 2e-4 rad.
-  const auto steps = static_cast<int>(std::ceil(clock.duration() / kStep)) + 1;
-  KeptMotion motion{clock, least_ramp(joints, clock, limits, dt), kStep, limits.lower.size(), {}, {}};
-  for (int i = 0; i <= steps; ++i) {
-    const Vector<N> q = joints.at(clock.at(i * kStep).s).x;
-    motion.q.insert(motion.q.end(), q.data(), q.data() + q.size());
-    motion.gaps.push_back(bounds.least_gap(q, KeptMotion::kRange));
-  }
-  return std::make_shared<const KeptMotion>(std::move(motion));
-}
-
-/// A path for a PathFollower that keeps the path, from the posture q0 at rest: `path` with the clock of
-/// fastest_clock(), at least as long as `path`. options.reserve is for what the clock does not know. The scheme is the
-/// scheme of the tracker. Pass motion() of the result to the follower. Throws std::invalid_argument as rollout() and
-/// fastest_clock() do, and if the arm cannot follow the path. Allocates.
-template <typename Arm, typename Path, typename Scheme, typename Kept>
-[[nodiscard]] TimedPath<Path> kept_path(const Arm& arm, const Path& path, const Scheme& scheme,
-                                        const Vector<Arm::kDof>& q0, const JointLimits<Arm::kDof>& limits,
-                                        Kept&& bounds, const FastestOptions& options) {
-  const auto along = joint_path_of(arm, path, scheme, q0, bounds);
-  require_followed(along, path.duration());
-  FastestClock clock = fastest_clock(*along.joints, path, limits, bounds, options);
-  stretch_to(clock, path.duration(), options.dt);
-  return {path, kept_motion(*along.joints, clock, limits, bounds, options.dt)};
-}
-
 /// Moves an arm along a path in the least time within its joint limits: the joint positions of a velocity-level scheme
 /// along the path (rollout()), with the clock of FastestClock. The tip stays on the path.
 ///
@@ -160,8 +122,11 @@ RolloutResult<Arm::kDof> fastest(const Arm& arm, const Path& path, const Scheme&
                                  const JointLimits<Arm::kDof>& limits, Kept&& bounds, const FastestOptions& options,
                                  Recorder&& record) {
   validation::require_positive("dt", options.dt);
-  const auto path_of = joint_path_of(arm, path, scheme, q0, bounds);
+  const auto path_of = joint_path_of(arm, path, scheme, q0, path.duration());
   if (!path_of.joints) return path_of.result;
+  for (const double p : path_of.joints->times()) {
+    if (!bounds.empty()) bounds.require(path_of.joints->at(p).x);
+  }
   const FastestClock clock = fastest_clock(*path_of.joints, path, limits, bounds, options);
   return play(arm, path, *path_of.joints, clock, TimeGrid<double>(clock.duration(), options.dt), record);
 }

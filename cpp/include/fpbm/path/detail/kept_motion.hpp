@@ -6,18 +6,18 @@
 #include <vector>
 
 #include "fpbm/core/types.hpp"
-#include "fpbm/path/fastest_clock.hpp"
+#include "fpbm/path/detail/fastest_clock.hpp"
 
 namespace fpbm {
 
 /// Plan of a motion along a path that a PathFollower keeps (kept_path()).
 struct KeptMotion {
   FastestClock clock;
-  double ramp;               ///< Least ramp of the follower with which no change of its rate exceeds a bound [s].
-  double step;               ///< Time between postures [s].
-  Eigen::Index dof;          ///< Number of joints.
-  std::vector<double> q;     ///< Postures, one after another [rad] or [m].
-  std::vector<double> gaps;  ///< Least gap of the bounds (Bounds::least_gap()) in each posture, at most kRange [m].
+  double ramp;                    ///< Least ramp of the follower with which no change of its rate exceeds a bound [s].
+  double step;                    ///< Time between postures [s].
+  Eigen::Index dof;               ///< Number of joints.
+  std::vector<double> q;          ///< Postures, one after another [rad] or [m].
+  std::vector<double> closeness;  ///< Bounds::closeness() within kRange in each posture [m].
 
   /// Gaps above this range have no effect [m].
   static constexpr double kRange = 0.02;
@@ -34,17 +34,17 @@ struct KeptMotion {
     return result;
   }
 
-  /// The least planned gap near t [s].
-  [[nodiscard]] double gap(double t) const noexcept {
+  /// The planned closeness near t [s].
+  [[nodiscard]] double closeness_at(double t) const noexcept {
     const std::size_t i = place(t).first;
-    return std::min(gaps[i], gaps[i + 1]);
+    return std::max(closeness[i], closeness[i + 1]);
   }
 
  private:
   /// Index of the posture before t, and the fraction of the step after this posture.
   [[nodiscard]] std::pair<std::size_t, double> place(double t) const noexcept {
-    const double steps = std::clamp(t / step, 0.0, static_cast<double>(gaps.size() - 1));
-    const std::size_t i = std::min(static_cast<std::size_t>(steps), gaps.size() - 2);
+    const double steps = std::clamp(t / step, 0.0, static_cast<double>(closeness.size() - 1));
+    const std::size_t i = std::min(static_cast<std::size_t>(steps), closeness.size() - 2);
     return {i, steps - static_cast<double>(i)};
   }
 };

@@ -45,6 +45,7 @@ template <typename Arm, typename Scheme, typename TrackerState, typename Space, 
                           TickReferences<Space, Scalar> references, typename TrackerState::Result& result) noexcept {
   using Loop = ClosedLoop<Arm, Scheme, Space>;
   using JointVector = typename TrackerState::JointVector;
+  if (TrackerState::kLevel == Level::kVelocity) state.most_path_fraction = references.most_path_fraction;
   const auto& joints = state.tick.joints;
   Desired<Loop, Space, Arm::kDof, Scalar> desired{
       {arm, scheme, {}, joints, filled<JointVector>(joints.q.size())}, {}, state.tick.motion_to(joints)};

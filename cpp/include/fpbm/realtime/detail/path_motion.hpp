@@ -4,6 +4,7 @@
 #include <limits>
 #include <optional>
 
+#include "fpbm/core/status.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/limits/detail/rows.hpp"
 #include "fpbm/linalg/detail/entrywise.hpp"
@@ -23,6 +24,17 @@ template <typename Desired, int N, typename Scalar>
   const Scalar moved = sum_over(u, [&](Eigen::Index i) { return change(i) * (u.coeff(i) - desired.still.coeff(i)); });
   if (square == Scalar(0)) return Scalar(1);
   return moved > Scalar(0) ? std::min(moved / square, most) : Scalar(0);
+}
+
+/// Sets path_fraction and status of the result for a tick that ends in the state `next`.
+template <typename TrackerState, typename Desired, typename Rows_>
+void report_path(const TrackerState& state, const Desired& desired, const Rows_& rows,
+                 const typename TrackerState::JointState& next, typename TrackerState::Result& result) noexcept {
+  if (!state.on_path()) return;
+  result.path_fraction = path_fraction(desired, state.tick.motion_to(next), state.most_path_fraction);
+  if (result.path_fraction < 1) {
+    result.status = worse(result.status, rows.admit(desired.u) ? Status::kSlowed : Status::kBlocked);
+  }
 }
 
 /// The velocity on the path with the fraction σ in [0, most] nearest to 1 that the limits and the rows admit, if there

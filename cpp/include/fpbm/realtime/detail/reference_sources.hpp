@@ -41,22 +41,28 @@ void advance_source(TargetFilter<Space, Scalar>& source, Scalar, bool, Scalar) n
   source.advance();
 }
 
-/// Before a tick: stops the clock of a kept path while the arm stops, and before postures in which a gap of the bounds
-/// is smaller than planned, since an obstacle has moved. q: posture of the arm, for its size.
-template <typename Source, typename Bounds_, typename JointVector>
-void look_ahead(Source&, bool, Bounds_&, const JointVector&) noexcept {}
-template <typename Path, typename Bounds_, typename JointVector>
-void look_ahead(PathFollower<Path>& source, bool stopping, Bounds_& bounds, const JointVector&) noexcept {
-  // Obstacles at rest change no gap. Interpolated postures change gaps by less than this [m].
+/// Sets the speed of a source before a tick, if the speed is not 0. Stops the clock of a kept path while the arm stops,
+/// and before postures that are closer to the bounds than planned, since an obstacle has moved. q: posture of
+/// the arm.
+template <typename Space, typename Scalar, typename Bounds_, typename JointVector>
+void prepare_source(const Reference<Space, Scalar>&, Scalar, bool, Bounds_&, const JointVector&) noexcept {}
+template <typename Space, typename Scalar, typename Bounds_, typename JointVector>
+void prepare_source(TargetFilter<Space, Scalar>& source, Scalar speed, bool, Bounds_&, const JointVector&) noexcept {
+  if (speed != Scalar(0)) source.set_speed(speed);
+}
+template <typename Path, typename Scalar, typename Bounds_, typename JointVector>
+void prepare_source(PathFollower<Path>& source, Scalar speed, bool stopping, Bounds_& bounds,
+                    const JointVector&) noexcept {
+  // Obstacles at rest change no gap. Interpolated postures change gaps by less than this sum [m].
   constexpr double kTolerance = 1e-3;
+  if (speed != Scalar(0)) source.set_speed(speed);
   const KeptMotion* const kept = source.kept();
   if (kept == nullptr) return;
   bool blocked = false;
   if (!bounds.empty()) {
-    using Scalar = typename JointVector::Scalar;
     const auto t = static_cast<double>(source.stop_time());
     const auto q = kept->template posture<JointVector::RowsAtCompileTime, Scalar>(t);
-    blocked = static_cast<double>(bounds.least_gap(q, Scalar(KeptMotion::kRange))) < kept->gap(t) - kTolerance;
+    blocked = static_cast<double>(bounds.closeness(q, Scalar(KeptMotion::kRange))) > kept->closeness_at(t) + kTolerance;
   }
   source.hold(stopping || blocked);
 }

@@ -57,6 +57,7 @@ struct TrackerState {
   bool keeps_first_level;
   bool returning;  ///< Whether the joints return from a start outside their bounds.
   bool stopping = false;
+  Scalar speed = Scalar(0);               ///< Of set_speed(); 0: each source has its own speed.
   Scalar most_path_fraction = Scalar(0);  ///< Of the references of the tick.
 
   [[nodiscard]] Scalar dt() const noexcept { return tick.motion.dt; }
@@ -75,6 +76,12 @@ struct TrackerState {
     progress.try_again();
     held_level.release();
     lower_levels.release();
+  }
+
+  bool set_speed(Scalar fraction) noexcept {
+    if (!(fraction > Scalar(0) && fraction <= Scalar(1))) return false;
+    speed = fraction;
+    return true;
   }
 
   /// Initial result of a tick: the arm has not moved.

@@ -48,15 +48,14 @@ template <int N, typename Nodes>
   return path;
 }
 
-/// joint_path() of a scheme at velocity level. Each posture must keep the bounds.
-template <typename Arm, typename Path, typename Scheme, typename Kept>
+/// joint_path() of a scheme at velocity level. duration: of the parameter of the result [s].
+template <typename Arm, typename Path, typename Scheme>
 [[nodiscard]] JointPath<Arm::kDof> joint_path_of(const Arm& arm, const Path& path, const Scheme& scheme,
-                                                 const Vector<Arm::kDof>& q0, Kept& bounds) {
+                                                 const Vector<Arm::kDof>& q0, double duration) {
   static_assert(Scheme::kLevel == Level::kVelocity, "a motion in the least time needs a scheme at velocity level");
-  return joint_path<Arm::kDof>(path.duration(), [&](int intervals, std::vector<Vector<Arm::kDof>>& q) {
+  return joint_path<Arm::kDof>(duration, [&](int intervals, std::vector<Vector<Arm::kDof>>& q) {
     const TimeGrid<double> nodes(path.duration(), path.duration() / intervals);
     const auto add = [&](const auto& sample) {
-      if (!bounds.empty()) bounds.require(sample.q);
       q.push_back(sample.q);
       return true;
     };

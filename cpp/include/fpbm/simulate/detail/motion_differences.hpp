@@ -6,7 +6,7 @@
 
 #include "fpbm/core/types.hpp"
 #include "fpbm/model/joint.hpp"
-#include "fpbm/path/fastest_clock.hpp"
+#include "fpbm/path/detail/fastest_clock.hpp"
 #include "fpbm/path/spline.hpp"
 
 namespace fpbm {
