@@ -159,9 +159,11 @@ void expect_pair_to_agree() {
 }
 TEST(CholeskyOfPair, agrees_with_each_matrix_alone) {
   expect_pair_to_agree<2, double>();
+  expect_pair_to_agree<6, float>();
+#ifndef FPBM_FEW_TYPES
   expect_pair_to_agree<3, double>();
   expect_pair_to_agree<6, double>();
-  expect_pair_to_agree<6, float>();
+#endif
 }
 
 INSTANTIATE_TEST_SUITE_P(every, CholeskyOf, ::testing::ValuesIn(sizes()),

@@ -42,9 +42,11 @@ void expect_scaled(Eigen::Index m, Eigen::Index n) {
 }
 
 TEST(ScaledLevel, has_the_singular_values_of_its_docstring) {
-  expect_scaled<1, 7>(1, 7);
   expect_scaled<3, 7>(3, 7);
+#ifndef FPBM_FEW_TYPES
+  expect_scaled<1, 7>(1, 7);
   expect_scaled<6, 14>(6, 14);
+#endif
   expect_scaled<Eigen::Dynamic, Eigen::Dynamic>(2, 4);
   expect_scaled<Eigen::Dynamic, Eigen::Dynamic>(6, 24);
 }

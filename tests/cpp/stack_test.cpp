@@ -489,7 +489,7 @@ void expect_to_keep_bounds(const std::string& name, const Chain<>& chain, const 
   const Vector<kOpen> none = Vector<kOpen>::Zero(robot.dof());
   int moving = 0;
   double worst = -1.0;
-  const int motions = trials(30, 3);
+  const int motions = trials(30, trials(3));
   for (int k = 0; k < motions; ++k) {
     Random random(static_cast<std::uint32_t>(100 + k));
     Vector<kOpen> q0 = bounds.lower;

@@ -43,12 +43,9 @@ class Random {
     return uniform(rows * cols, low, high).reshaped(rows, cols);
   }
 
-  /// Symmetric positive definite, with a condition number of order 10.
-  [[nodiscard]] Eigen::MatrixXd positive_definite(Eigen::Index n) {
-    const Eigen::MatrixXd A = uniform(n, n, -1.0, 1.0);
-    const Eigen::MatrixXd product = A * A.transpose() / static_cast<double>(n) + 0.2 * Eigen::MatrixXd::Identity(n, n);
-    return product.cast<float>().cast<double>();
-  }
+  /// Symmetric positive definite, with a condition number of order 10. Compiled once, because products of matrices of
+  /// run-time size compile slowly.
+  [[nodiscard]] Eigen::MatrixXd positive_definite(Eigen::Index n);
 
  private:
   std::mt19937 engine_;
