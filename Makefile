@@ -198,8 +198,7 @@ homes: $(VENV)/package $(VENV)/test $(VENV)/peers
 
 test-view: page $(VENV)/package $(VENV)/test $(VENV)/browser
 	tools/need.sh chromium
-	$(BIN)/python -m pytest tests/python/test_view.py tests/python/test_view_robot.py tests/python/test_servo.py \
-	  tests/python/test_page.py --numprocesses $(JOBS) --dist loadfile
+	$(BIN)/python -m pytest tests/python/test_view.py tests/python/test_view_robot.py tests/python/test_servo.py tests/python/test_page.py
 
 lint: $(VENV)/package $(VENV)/lint
 	tools/need.sh clang-format clang-tidy cmake ninja:ninja-build $(EIGEN) $(GTEST)

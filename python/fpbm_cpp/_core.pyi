@@ -777,13 +777,51 @@ class Tracker:
 
         Commands stay within all bounds.
         """
+    @typing.overload
     def follow(
-        self, path: Path, *, ramp: typing.SupportsFloat | typing.SupportsIndex = 0.5, task: str | None = None
+        self,
+        paths: dict[str, typing.Any],
+        *,
+        ramp: typing.SupportsFloat | typing.SupportsIndex = 0.5,
+        keep_path: bool = False,
+        reserve: typing.SupportsFloat | typing.SupportsIndex = 0.05,
     ) -> PathFollower:
         """
-        A path from the present tip; ramp is the duration of a pause or a resumption [s].
+        Paths of several tasks of a stack, by task name, with one clock; options as for one path.
+        """
+    @typing.overload
+    def follow(
+        self,
+        path: Path,
+        *,
+        ramp: typing.SupportsFloat | typing.SupportsIndex = 0.5,
+        task: str | None = None,
+        keep_path: bool = False,
+        reserve: typing.SupportsFloat | typing.SupportsIndex = 0.05,
+    ) -> PathFollower:
+        """
+        A path from the present tip, for tick.
 
         For a stack, a path from the task of that name; the name is optional if only one task is a position or a pose.
+
+        Parameters
+        ----------
+        path : Path
+            The path. With keep_path, its duration is the least duration of the motion.
+        ramp : float
+            Duration of a pause or a resumption [s].
+        task : str, optional
+            Task of a stack.
+        keep_path : bool
+            Whether the tip stays on the path if the path is faster than the limits allow (docs: Paths in the least time). The
+            clock of fastest(), slowed by the reserve, replaces the time law. What this plan does not know (obstacles, other
+            targets, disturbances) slows the clock further. The ramp is extended until no change of the speed exceeds a bound.
+            With keep_first_level, stop stops the arm on the path. Needs a scheme at velocity level, and an arm at rest; takes
+            some 50 ms.
+        reserve : float
+            Fraction by which the motion lasts longer than the least time.
+
+        Raises ParameterError if the arm cannot follow the path within its limits and bounds.
         """
     def frame(self, task: str) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -826,6 +864,11 @@ class Tracker:
     def resume(self) -> None:
         """
         Follows references again.
+        """
+    def set_speed(self, fraction: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        """
+        Sets the speed of the paths and filters of the following ticks to a fraction in (0, 1]: PathFollower.set_speed
+        and TargetFilter.set_speed, for an operator's slider. Targets without a filter are not slowed.
         """
     def stop(self) -> None:
         """
@@ -1134,6 +1177,7 @@ def rollout(
     task: str,
     limit_options: typing.Any = None,
     stack_tasks: typing.Any = None,
+    kept: tuple[typing.SupportsFloat | typing.SupportsIndex, typing.SupportsFloat | typing.SupportsIndex] = ...,
 ) -> tuple[Status, float, int, dict[str, numpy.ndarray]]: ...
 def rotation(r: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
     """

@@ -15,6 +15,7 @@
 #include "fpbm/inverse/inverse_kinematics.hpp"
 #include "fpbm/limits/level_saturation.hpp"
 #include "fpbm/realtime/stack_tracker.hpp"
+#include "fpbm/simulate/kept_path.hpp"
 #include "fpbm/task/axis_task.hpp"
 #include "fpbm/task/position_task.hpp"
 #include "fpbm/task/posture_task.hpp"
@@ -199,6 +200,32 @@ TEST(NoAllocation, in_a_control_loop) {
 }
 
 /// In both lanes, the limits are active, so that each tracker completes its ticks separately.
+TEST(NoAllocation, on_a_kept_path) {
+  const SerialArm<7> arm(presets::panda());
+  const Vector<7> q0{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785};
+  Bounds bounds(Clearance<7>(presets::panda(), presets::capsules::panda(), {}, 0.005));
+  const auto scheme = MVN<7>(5.0);
+  const WithRotation path(InPlane(Path(Circle(0.1), 0.5, Quintic{}), {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}));
+  const auto kept = kept_path(arm, path, scheme, q0, arm.limits(), bounds, FastestOptions{});
+  TrackerOptions<> options;
+  options.keep_first_level = true;
+  const Limits<Level::kVelocity, 7> limits(arm.limits(), options.dt);
+  const Vector<7> rest = Vector<7>::Zero();
+  Tracker tracker(arm, Pose{}, scheme, State<7>{q0, rest}, options, limits, rest, bounds);
+  PathFollower follower(kept, tracker.tip(), 0.1, kept.motion());
+  const AllocationWatch watch;
+  for (int i = 0; i < 4000 && !follower.done(); ++i) {
+    if (i == 300) follower.pause();
+    if (i == 800) follower.resume();
+    if (i == 1000) tracker.stop();
+    if (i == 1500) tracker.resume();
+    if (i == 1800) tracker.set_speed(0.5);
+    (void)tracker.tick(follower);
+  }
+  EXPECT_EQ(watch.count().total(), 0);
+  EXPECT_TRUE(follower.done());
+}
+
 TEST(NoAllocation, in_trackers_side_by_side) {
   using In = Lanes<2>;
   constexpr double kTick = 4e-3;

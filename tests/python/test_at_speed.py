@@ -118,14 +118,16 @@ def test_an_arm_follows_a_circle_at_constant_speed():
     np.testing.assert_allclose(speed[steady], 0.125, rtol=0.01)
 
 
-def test_fastest_motions_keep_only_the_geometry():
+def test_fastest_motions_keep_the_geometry_and_the_speed():
     square = fp.Polyline(SQUARE, 3.0, blend=0.02).in_plane("yz")
-    runs = [
-        fp.fastest(PANDA, path, fp.MVN(), READY, task="pose", dt=5e-3)
-        for path in (square, square.at_speed(0.1, acceleration=0.5))
-    ]
-    assert runs[0].t[-1] == runs[1].t[-1] < 2.0
-    assert runs[0].max_error() < 1e-6
+    at_speed = square.at_speed(0.1, acceleration=0.5)
+    runs = [fp.fastest(PANDA, path, fp.MVN(), READY, task="pose", dt=5e-3) for path in (square, at_speed)]
+    assert runs[0].t[-1] < 2.0
+    assert runs[1].t[-1] < at_speed.duration
+    speed = np.linalg.norm(np.diff(runs[1].x[:, :3, 3], axis=0), axis=1) / 5e-3
+    assert speed.max() <= 0.1 * (1 + 1e-6)
+    assert np.mean(abs(speed / 0.1 - 1) < 0.01) > 0.9
+    assert max(run.max_error() for run in runs) < 1e-6
     stops = fp.fastest(PANDA, fp.Polyline(SQUARE, 3.0).in_plane("yz"), fp.MVN(), READY, task="pose", dt=5e-3)
     assert stops.t[-1] > runs[0].t[-1]
 

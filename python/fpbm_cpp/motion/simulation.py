@@ -147,8 +147,8 @@ def track(
     keep_path, reserve
         Whether the tip stays on the path if the path is faster than the limits allow: the path then lasts (1 + reserve)
         times the duration of fastest(). Needs a scheme at velocity level, and a start at rest. The durations and time
-        laws of shapes have no effect, except that the motion is not shorter than the path. The speed of a path at_speed()
-        is a bound. Nearly singular postures are not damped: the bounds on the joints limit the motion there.
+        laws of shapes have no effect, except that the motion is not shorter than the path. The speed of a path
+        at_speed() is a bound. Nearly singular postures are not damped: the bounds on the joints limit the motion there.
     """
     require_motion(arm, path, scheme, timed=not keep_path)
     options = motion_options(arm, dt, hold, qd0)

@@ -53,9 +53,9 @@ class PathFollower {
     paused_ = false;
     change_rate();
   }
-  /// Stops the clock as pause() does, or ends this stop, for a tracker that stops on a kept path.
-  void hold(bool on) noexcept {
-    held_ = on;
+  /// Largest rate of the clock, in [0, 1], for a tracker that stops on a kept path, or slows down near obstacles.
+  void limit_rate(Scalar most) noexcept {
+    most_rate_ = most;
     change_rate();
   }
   /// Changes the speed to a fraction of the speed of the path within a ramp; during a pause, after resume(). If the
@@ -124,7 +124,7 @@ class PathFollower {
 
  private:
   void change_rate() noexcept {
-    const Scalar rate = paused_ || held_ ? Scalar(0) : speed_;
+    const Scalar rate = paused_ ? Scalar(0) : std::min(speed_, most_rate_);
     if (rate == rate_) return;
     rate_ = rate;
     ticks_ = Scalar(0);
@@ -146,7 +146,7 @@ class PathFollower {
   Point end_;
   std::shared_ptr<const KeptMotion> kept_;
   bool paused_ = false;
-  bool held_ = false;  ///< Whether a tracker stops the clock.
+  Scalar most_rate_{1};  ///< limit_rate()
   TimeOptimalAxis<Scalar> clock_;
   AxisState<Scalar> now_{Scalar(0), Scalar(1), Scalar(0)};  ///< p, r and ṙ.
   Scalar rate_{1};                                          ///< The clock changes its rate to this rate.

@@ -20,7 +20,9 @@ struct KeptMotion {
   std::vector<double> closeness;  ///< Bounds::closeness() within kRange in each posture [m].
 
   /// Gaps above this range have no effect [m].
-  static constexpr double kRange = 0.02;
+  static constexpr double kRange = 0.1;
+  /// Gap to an obstacle that has moved before which the clock stops [m].
+  static constexpr double kStop = 0.02;
 
   /// The posture at t [s], interpolated linearly.
   template <int N, typename Scalar>
@@ -34,10 +36,13 @@ struct KeptMotion {
     return result;
   }
 
-  /// The planned closeness near t [s].
-  [[nodiscard]] double closeness_at(double t) const noexcept {
+  /// Largest rate of the clock if the closeness in the posture at t is `now` [m]: 1 as planned, 0 if a gap that was
+  /// above kRange is now kStop.
+  [[nodiscard]] double rate(double t, double now) const noexcept {
+    constexpr double kTolerance = 1e-3;  // Of the interpolation, in all gaps together.
     const std::size_t i = place(t).first;
-    return std::max(closeness[i], closeness[i + 1]);
+    const double excess = now - std::max(closeness[i], closeness[i + 1]) - kTolerance;
+    return std::clamp(1.0 - excess / (kRange - kStop), 0.0, 1.0);
   }
 
  private:

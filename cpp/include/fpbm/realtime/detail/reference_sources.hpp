@@ -41,9 +41,9 @@ void advance_source(TargetFilter<Space, Scalar>& source, Scalar, bool, Scalar) n
   source.advance();
 }
 
-/// Sets the speed of a source before a tick, if the speed is not 0. Stops the clock of a kept path while the arm stops,
-/// and before postures that are closer to the bounds than planned, since an obstacle has moved. q: posture of
-/// the arm.
+/// Sets the speed of a source before a tick, if the speed is not 0. Limits the rate of the clock of a kept path: to 0
+/// while the arm stops, and before postures that are closer to the bounds than planned, since an obstacle has moved. q:
+/// posture of the arm.
 template <typename Space, typename Scalar, typename Bounds_, typename JointVector>
 void prepare_source(const Reference<Space, Scalar>&, Scalar, bool, Bounds_&, const JointVector&) noexcept {}
 template <typename Space, typename Scalar, typename Bounds_, typename JointVector>
@@ -53,18 +53,16 @@ void prepare_source(TargetFilter<Space, Scalar>& source, Scalar speed, bool, Bou
 template <typename Path, typename Scalar, typename Bounds_, typename JointVector>
 void prepare_source(PathFollower<Path>& source, Scalar speed, bool stopping, Bounds_& bounds,
                     const JointVector&) noexcept {
-  // Obstacles at rest change no gap. Interpolated postures change gaps by less than this sum [m].
-  constexpr double kTolerance = 1e-3;
   if (speed != Scalar(0)) source.set_speed(speed);
   const KeptMotion* const kept = source.kept();
   if (kept == nullptr) return;
-  bool blocked = false;
-  if (!bounds.empty()) {
+  double rate = stopping ? 0.0 : 1.0;
+  if (!stopping && !bounds.empty()) {
     const auto t = static_cast<double>(source.stop_time());
     const auto q = kept->template posture<JointVector::RowsAtCompileTime, Scalar>(t);
-    blocked = static_cast<double>(bounds.closeness(q, Scalar(KeptMotion::kRange))) > kept->closeness_at(t) + kTolerance;
+    rate = kept->rate(t, static_cast<double>(bounds.closeness(q, Scalar(KeptMotion::kRange))));
   }
-  source.hold(stopping || blocked);
+  source.limit_rate(static_cast<Scalar>(rate));
 }
 
 /// Largest fraction of the displacement along a kept path in the coming tick (PathFollower::most_fraction()); 0 for
