@@ -7,8 +7,11 @@ orientation (position tasks with 6 joints). Paths that leave the workspace or th
    distance from the path, and processor time of fp.fastest() per second of motion.
 2. TOPP-RA (`pip install toppra`) on the same joint paths and bounds: without bounds on jerk, and the duration with
    bounds on jerk relative to the duration of TOPP-RA, which has no bounds on jerk.
-3. Trackers with keep_path, on paths that last half of the least duration: the largest errors.
-4. Weights: the duration under WMVN with the weights 1/A^2, A the bounds on acceleration, relative to MVN.
+3. Trackers with keep_path, on paths that last half of the least duration: alone, while an operator changes the speed,
+   pauses, stops and resumes at random moments, and with a ball that is put into the path for 2 s. The largest errors,
+   the ratios to the bounds, and the duration relative to the least duration.
+4. Ruckig (`pip install ruckig`) on straight lines of a gantry, from rest to rest: the duration relative to Ruckig.
+5. Weights: the duration under WMVN with the weights 1/A^2, A the bounds on acceleration, relative to MVN.
 """
 
 from __future__ import annotations
@@ -97,12 +100,131 @@ def duration_with_weights(run: fp.Run, weights: Array) -> float:
     return float(again.t[-1])
 
 
-def error_of_tracker(run: fp.Run) -> float:
-    """Largest error [m, rad] of a tracker that keeps the path, which lasts half of the least duration."""
-    assert isinstance(run.path, fp.Waypoints)
-    path = fp.Waypoints(run.path.points, duration=float(run.t[-1]) / 2)
-    kept = fp.track(run.arm, path, fp.MVN(k=5.0), run.q0, task=run.task, limits=run.limits, keep_path=True)
-    return float(np.abs(kept.error).max())
+FAR = (0.0, 0.0, 5.0)
+
+
+def ball(centre: Any) -> fp.Capsule:
+    return fp.Capsule(0, a=centre, b=centre, radius=0.05, name="ball")
+
+
+class Ride:
+    """A motion of a tracker along a kept path, which lasts half of the least duration, tick by tick."""
+
+    def __init__(self, run: fp.Run, bounds: list[fp.Clearance]) -> None:
+        assert isinstance(run.path, fp.Waypoints)
+        self.tracker = fp.Tracker(
+            run.arm,
+            fp.MVN(k=5.0),
+            run.q0,
+            task=run.task,
+            limits=run.limits,
+            singular_radius=0.0,
+            keep_first_level=True,
+            bounds=bounds,
+        )
+        path = fp.Waypoints(run.path.points, duration=float(run.t[-1]) / 2)
+        self.follower = self.tracker.follow(path, keep_path=True)
+        self.q = [self.tracker.q]
+        self.error = 0.0
+        self.waited = 0
+
+    def tick(self) -> bool:
+        tick = self.tracker.tick(self.follower)
+        self.q.append(tick.q)
+        self.error = max(self.error, float(np.abs(tick.error).max()))
+        self.waited += bool(np.abs(tick.qd).max() < 1e-5)
+        return not self.follower.done
+
+    def ratios(self, limits: fp.JointLimits) -> list[float]:
+        q = np.vstack([self.q[:1]] * 3 + [np.array(self.q)])
+        bounds = (limits.velocity, limits.acceleration, limits.jerk)
+        return [float(np.max(np.abs(np.diff(q, k, axis=0)) / DT**k / bound)) for k, bound in enumerate(bounds, 1)]
+
+
+def with_operator(ride: Ride, random: np.random.Generator) -> None:
+    """Changes the speed, pauses, stops and resumes at random moments."""
+    tracker, follower = ride.tracker, ride.follower
+    actions = (follower.pause, follower.resume, tracker.stop, tracker.resume)
+    change = int(random.integers(50, 400))
+    k = 0
+    while ride.tick():
+        k += 1
+        if k % 5000 == 0:
+            change = k + 2000
+            tracker.resume()
+            follower.resume()
+            tracker.set_speed(1.0)
+        elif k >= change:
+            change = k + int(random.integers(20, 600))
+            which = int(random.integers(6))
+            if which < 4:
+                actions[which]()
+            else:
+                tracker.set_speed(float(random.uniform(0.05, 1.0)) if which == 4 else 1.0)
+
+
+def with_ball(ride: Ride, place: Any) -> bool:
+    """Puts a ball into the path for 2 s after 0.05 s. Returns whether the arm had to wait."""
+    k = 0
+    more = True
+    while more and k < 60_000:
+        if k in (50, 2050):
+            ride.tracker.move("ball", ball(place if k == 50 else FAR))
+        more = ride.tick()
+        k += 1
+    return ride.waited > 100
+
+
+def kept_rides(name: str, run: fp.Run, random: np.random.Generator) -> dict[str, list[float]]:
+    """For each kind of ride: error, ratios to the bounds, duration relative to the least duration."""
+    found = {}
+    for kind in ("alone", "operator", "ball"):
+        place, bounds = None, []
+        if kind == "ball":
+            end = run.x[-1][:3, 3] if run.x.ndim == 3 else run.x[-1]
+            place = end + random.uniform(-0.05, 0.05, 3)
+            try:
+                bounds = [fp.Clearance.preset(name, obstacles=[ball(FAR)])]
+                near = fp.Clearance.preset(name, obstacles=[ball(place)]).nearest(run.arm, run.q0)
+                ride = Ride(run, bounds)
+            except fp.ParameterError:  # No capsules, or the start is too close to a self-collision.
+                continue
+            if near is None or near.distance < 0.05:
+                continue
+            if not with_ball(ride, place):
+                continue
+        else:
+            ride = Ride(run, bounds)
+            if kind == "operator":
+                with_operator(ride, random)
+            else:
+                while ride.tick():
+                    pass
+        found[kind] = [ride.error, *ride.ratios(run.limits), (len(ride.q) - 1) * DT / float(run.t[-1])]
+    return found
+
+
+def ruckig_ratios(count: int, random: np.random.Generator) -> list[float]:
+    """Durations of straight lines of a gantry from rest to rest, relative to Ruckig's with one coordinate."""
+    from ruckig import InputParameter, Ruckig, Trajectory
+
+    gantry = fp.SerialArm([fp.Joint("prismatic", axis=axis) for axis in np.eye(3)])
+    ratios = []
+    for _ in range(count):
+        line = random.uniform(-1.0, 1.0, 3)
+        velocity, acceleration, jerk = (random.uniform(0.3, 1.0, 3) * most for most in (1.0, 5.0, 100.0))
+        free = np.full(3, 10.0)
+        limits = fp.JointLimits(lower=-free, upper=free, velocity=velocity, acceleration=acceleration, jerk=jerk)
+        run = fp.fastest(gantry, fp.Line(line), fp.MVN(), np.zeros(3), limits=limits)
+        given = InputParameter(1)
+        given.target_position = [1.0]
+        given.max_velocity = [float(np.min(velocity / abs(line)))]
+        given.max_acceleration = [float(np.min(acceleration / abs(line)))]
+        given.max_jerk = [float(np.min(jerk / abs(line)))]
+        trajectory = Trajectory(1)
+        Ruckig(1).calculate(given, trajectory)
+        ratios.append(float(run.t[-1]) / trajectory.duration)
+    return ratios
 
 
 def print_table(headings: list[str], rows: list[list[Any]]) -> None:
@@ -118,7 +240,7 @@ def main() -> int:
     given = parser.parse_args()
     worst: dict[str, list[list[float]]] = defaultdict(list)
     against: dict[str, list[list[float]]] = defaultdict(list)
-    tracked: list[float] = []
+    rides: dict[str, list[list[float]]] = defaultdict(list)
     for name in ARMS:
         random = np.random.default_rng(given.seed)
         arm = fp.SerialArm.preset(name)
@@ -128,7 +250,8 @@ def main() -> int:
             worst[name].append([*ratios(run), np.abs(run.error).max(), 1e3 * seconds, run.t[-1]])
             loose = fp.fastest(arm, run.path, run.scheme, run.q0, dt=DT, task=run.task, limits=free)
             reference = toppra_duration(loose)
-            tracked.append(error_of_tracker(run))
+            for kind, values in kept_rides(name, run, random).items():
+                rides[kind].append(values)
             weighted = duration_with_weights(run, 1.0 / bounded.acceleration**2)
             against[name].append([loose.t[-1] / reference, run.t[-1] / reference, weighted / run.t[-1]])
     rows = []
@@ -146,9 +269,19 @@ def main() -> int:
         rows.append([name, *(f"{np.median(x):.3f}, {x.max():.3f}" for x in peers), f"{np.nanmedian(weighted):.3f}"])
     head = ["arm", "without jerk bounds / TOPP-RA: median, largest", "with jerk bounds / TOPP-RA without"]
     print_table([*head, "weights / MVN: median"], rows)
-    errors = np.array(tracked)
-    inside = np.count_nonzero(errors < 1e-5)
-    print(f"\ntrackers with keep_path: {inside} of {len(errors)} within 1e-5 m and rad, largest {errors.max():.1e}")
+    ratios_of_ruckig = np.array(ruckig_ratios(given.count, np.random.default_rng(given.seed)))
+    median, most = np.median(ratios_of_ruckig), ratios_of_ruckig.max()
+    print(f"\nstraight lines of a gantry / Ruckig: median {median:.4f}, largest {most:.4f}\n")
+    rows = []
+    for kind, values in rides.items():
+        error, *most, longer = np.array(values).T
+        shares = (f"{np.mean(error <= bound):.1%}" for bound in (1e-5, 1e-4, 1e-3))
+        durations = f"{np.median(longer):.3f}" if kind == "alone" else ""
+        rows.append(
+            [kind, len(error), *shares, f"{error.max():.1e}", *(f"{each.max():.6f}" for each in most), durations]
+        )
+    head = ["kept in the loop", "motions", "within 1e-5 m, rad", "1e-4", "1e-3", "largest"]
+    print_table([*head, "velocity", "acceleration", "jerk", "duration / least: median"], rows)
     return 0
 
 

@@ -7,7 +7,7 @@ import fpbm_cpp as fp
 arm = fp.SerialArm.preset("panda")
 q0 = [0, -0.785, 0, -2.356, 0, 1.571, 0.785]  # [rad], the tool points down
 corners = 0.01 * np.array([[0, 0], [0, 8], [12, 8], [12, 2], [8, 0], [12, -2], [12, -8], [0, -8], [0, 0]])  # [m]
-seam = fp.Polyline(corners, duration=1, blend=0.005).in_plane("xy")  # Only the geometry counts, not the duration.
+seam = fp.Polyline(corners, blend=0.005).in_plane("xy")
 speed = 0.15  # [m/s]
 
 
