@@ -129,10 +129,10 @@ def test_libfranka_rejects_no_command(motion):
     assert shares["jerk"] < 0.2  # Unfiltered targets would exceed the bound.
 
 
-def test_libfranka_rejects_no_fastest_motion():
+def limits_with_margin() -> fp.JointLimits:
     """With a margin of A^2/(2 J) for the condition "approach": A^2/(2 J) is the velocity in which A fades to zero."""
     margin = EPS + ACCELERATION**2 / (2 * JERK)
-    limits = replace(
+    return replace(
         example.LIMITS,
         lower=joint_limits("limit", "lower"),
         upper=joint_limits("limit", "upper"),
@@ -140,13 +140,43 @@ def test_libfranka_rejects_no_fastest_motion():
         velocity_offset=joint_limits("position_based_velocity_limits", "velocity_offset") + margin,
         deceleration=joint_limits("position_based_velocity_limits", "deceleration_limit"),
     )
-    start = [0, -0.785, 0, -2.356, 0, 1.571, 0.785]
+
+
+START = [0, -0.785, 0, -2.356, 0, 1.571, 0.785]
+
+
+def test_libfranka_rejects_no_kept_path():
+    """An operator changes the speed of a tracker along kept paths, pauses and resumes."""
+    limits = limits_with_margin()
+    random = np.random.default_rng(1)
+    cycles = 0
+    while cycles < 6000:
+        points = np.cumsum(np.vstack([np.zeros(3), random.normal(0, 0.12, (5, 3))]), axis=0)
+        tracker = fp.Tracker(example.ARM, fp.MVN(k=5), START, limits=limits, singular_radius=0.0)
+        try:
+            follower = tracker.follow(fp.Waypoints(points), keep_path=True)
+        except fp.ParameterError:
+            continue  # The path leaves the workspace, or a joint its range.
+        q = [tracker.q]
+        while not follower.done:
+            if len(q) % 200 == 0:
+                follower.set_speed(random.uniform(0.1, 1.0))
+                (follower.pause if len(q) % 1000 == 400 else follower.resume)()
+            tick = tracker.tick(follower)
+            assert np.abs(tick.error).max() < 1e-6
+            q.append(tick.q)
+        assert violated_conditions(*from_rest_to_rest(np.arange(len(q)), np.array(q))) == set()
+        cycles += len(q)
+
+
+def test_libfranka_rejects_no_fastest_motion():
+    limits = limits_with_margin()
     random = np.random.default_rng(1)
     cycles, peak = 0, 0.0
     while cycles < 6000:
         points = np.cumsum(np.vstack([np.zeros(3), random.normal(0, 0.12, (5, 3))]), axis=0)
         try:
-            run = fp.fastest(example.ARM, fp.Waypoints(points, duration=1), fp.MVN(), start, limits=limits)
+            run = fp.fastest(example.ARM, fp.Waypoints(points, duration=1), fp.MVN(), START, limits=limits)
         except fp.ParameterError:
             continue  # The path leaves the workspace, or a joint its range.
         assert violated_conditions(*from_rest_to_rest(np.arange(len(run.q)), run.q)) == set()
