@@ -87,7 +87,7 @@ class AnyTracker {
 
  protected:
   double dt_;
-  double speed_ = 0.0;  ///< Of set_speed(); 0: each source has its own speed.
+  double speed_ = 0.0;  ///< Fraction of set_speed(); 0: each source has its own speed.
   bool stopping_ = false;
 };
 

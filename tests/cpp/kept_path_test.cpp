@@ -18,7 +18,7 @@
 #include "fpbm/task/pose_task.hpp"
 #include "support/random.hpp"
 
-/// kept_path(): the tip stays on the path, whatever an operator does, and no bound is exceeded by differences.
+/// kept_path(): the tip stays on the path while an operator changes the speed, and no bound is exceeded by differences.
 namespace fpbm::test::kept_path_laws {
 namespace {
 

@@ -1,4 +1,4 @@
-"""Tracker.follow(keep_path=True): the tip stays on the path, whatever an operator does, and no bound is exceeded."""
+"""Tracker.follow(keep_path=True): the tip stays on the path while an operator changes the speed, within all bounds."""
 
 import numpy as np
 import pytest

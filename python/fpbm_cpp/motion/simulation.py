@@ -152,8 +152,8 @@ def track(
     """
     require_motion(arm, path, scheme, timed=not keep_path)
     options = motion_options(arm, dt, hold, qd0)
-    followed_paths, *kept = kept_paths(path, task) if keep_path else (path, inf, 0.0)
-    name, kind, followed, tasks = task_and_paths(followed_paths, task, stack)
+    geometry, speed, shortest = kept_paths(path, task) if keep_path else (path, inf, 0.0)
+    name, kind, followed, tasks = task_and_paths(geometry, task, stack)
     limited = LimitOptions(
         limits_of(arm, limits),
         error_bound,
@@ -168,7 +168,7 @@ def track(
         bool(keep_path),
         reserve,
     )
-    outcome = rollout(arm, followed, scheme, q0, options["qd0"], dt, hold, kind, limited, tasks, kept)
+    outcome = rollout(arm, followed, scheme, q0, options["qd0"], dt, hold, kind, limited, tasks, (speed, shortest))
     options |= {**limited._asdict(), "stack": stack}
     return make_run(outcome, q0, arm, path, scheme, name, options, track)
 

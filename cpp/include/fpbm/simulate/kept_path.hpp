@@ -58,7 +58,7 @@ template <int N, typename Path, typename JointsOf, typename Kept>
 /// A path for a PathFollower that keeps the path, from the posture q0 at rest: `path` with the clock of fastest(), at
 /// least as long as `path` (docs/paths.md, In a control loop).
 ///
-/// options.reserve is for what the plan does not know; usual value: 0.05. The scheme, at velocity level, is the scheme
+/// options.reserve is for disturbances and an operator; usual value: 0.05. The scheme, at velocity level, is the scheme
 /// of the tracker. Pass motion() of the result to the follower. The path must begin and end at rest with zero
 /// acceleration. Throws std::invalid_argument if an argument is out of range, or the arm cannot follow the path.
 /// Allocates.

@@ -39,7 +39,7 @@ struct KeptMotion {
   /// Largest rate of the clock if the closeness in the posture at t is `now` [m]: 1 as planned, 0 if a gap that was
   /// above kRange is now kStop.
   [[nodiscard]] double rate(double t, double now) const noexcept {
-    constexpr double kTolerance = 1e-3;  // Of the interpolation, in all gaps together.
+    constexpr double kTolerance = 1e-3;  // Error of the interpolation, in all gaps together.
     const std::size_t i = place(t).first;
     const double excess = now - std::max(closeness[i], closeness[i + 1]) - kTolerance;
     return std::clamp(1.0 - excess / (kRange - kStop), 0.0, 1.0);

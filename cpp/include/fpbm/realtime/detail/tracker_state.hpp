@@ -57,8 +57,8 @@ struct TrackerState {
   bool keeps_first_level;
   bool returning;  ///< Whether the joints return from a start outside their bounds.
   bool stopping = false;
-  Scalar speed = Scalar(0);               ///< Of set_speed(); 0: each source has its own speed.
-  Scalar most_path_fraction = Scalar(0);  ///< Of the references of the tick.
+  Scalar speed = Scalar(0);               ///< Fraction of set_speed(); 0: each source has its own speed.
+  Scalar most_path_fraction = Scalar(0);  ///< Entry of the references of the tick.
 
   [[nodiscard]] Scalar dt() const noexcept { return tick.motion.dt; }
   [[nodiscard]] const MotionLimits& limits() const noexcept { return limiter.limits(); }
