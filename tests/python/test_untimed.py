@@ -186,11 +186,11 @@ def test_a_motion_in_the_null_space_is_planned_for_the_duration_of_the_motion():
     """A plan for another duration has other postures, at which the joints may be too slow."""
     scheme = fp.MVN(k=5, joint_centring=3.0)
     run = fp.track(PANDA, fp.Circle(0.15).in_plane("yz"), scheme, READY, keep_path=True)
-    assert run.status.code is fp.Status.OK
+    assert run.scale.min() == 1.0  # The clock is slow at the start, where the null-space motion begins with a velocity.
     assert run.max_error() < 1e-6
 
 
-def test_a_kept_path_at_a_constant_speed_keeps_its_duration():
+def test_a_kept_path_at_a_constant_speed_keeps_its_speed():
     for path in (
         fp.Circle(0.1, 1.0).in_plane("yz"),
         fp.Circle(0.1).in_plane("yz"),
@@ -200,7 +200,8 @@ def test_a_kept_path_at_a_constant_speed_keeps_its_duration():
     ):
         at = path.at_speed(0.05, acceleration=0.5)
         run = fp.track(PANDA, at, fp.MVN(k=5), READY, keep_path=True)
-        np.testing.assert_allclose(run.t[-1], at.duration, atol=1.1e-3)
+        assert 0.95 * at.duration < run.t[-1] <= at.duration  # The joints bound the ramps.
+        assert np.linalg.norm(np.diff(run.x, axis=0), axis=1).max() / 1e-3 <= 0.05 * (1 + 1e-6)
         assert run.max_error() < 1e-6
 
 
