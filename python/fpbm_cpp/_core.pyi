@@ -807,15 +807,15 @@ class Tracker:
         Parameters
         ----------
         path : Path
-            The path. With keep_path, its duration is the least duration of the motion.
+            The path. With keep_path, the duration of the path is a lower bound on the duration of the motion.
         ramp : float
             Duration of a pause or a resumption [s].
         task : str, optional
             Task of a stack.
         keep_path : bool
             Whether the tip stays on the path if the path is faster than the limits allow (docs: Paths in the least time). The
-            clock of fastest(), slowed by the reserve, replaces the time law. What this plan does not know (obstacles, other
-            targets, disturbances) slows the clock further. The ramp is extended until no change of the speed exceeds a bound.
+            clock of fastest(), slowed by the reserve, replaces the time law. Obstacles, other targets and disturbances, which
+            the plan does not know, slow the clock further. The ramp is extended until no change of the speed exceeds a bound.
             With keep_first_level, stop stops the arm on the path. Needs a scheme at velocity level, and an arm at rest; takes
             some 50 ms.
         reserve : float
