@@ -18,7 +18,7 @@ int main() {
   constexpr double kSpeed = 0.15;                                        // [m/s]
 
   fpbm::FastestOptions options;  // 1 kHz
-  options.tip.velocity = kSpeed;
+  options.tip_speed = kSpeed;
   fpbm::Vector<3> place = fpbm::Vector<3>::Zero();
   fpbm::Vector<7> acceleration = fpbm::Vector<7>::Zero();
   int steady = 0;

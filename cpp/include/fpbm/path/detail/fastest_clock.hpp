@@ -146,8 +146,9 @@ class FastestClock {
   }
   /// Largest velocity at a distance from an end of the range, from which a Tracker can stop: the braking envelope.
   [[nodiscard]] static double braking_velocity(const JointBounds<double>& joint, double distance) noexcept {
-    if (std::isfinite(joint.deceleration))
+    if (std::isfinite(joint.deceleration)) {
       return std::sqrt(2.0 * joint.deceleration * distance) - joint.velocity_offset;
+    }
     const double ramp = joint.acceleration / joint.jerk;
     const double offset = JointBounds<double>::kOffset * joint.acceleration * ramp;
     return std::sqrt(offset * offset + 2.0 * joint.acceleration * distance) - offset;
