@@ -262,7 +262,7 @@ TEST(KeptPath, has_a_null_space_motion_for_the_duration_of_the_motion) {
   const Ride found = ride(tracker, follower, kNothing);
   EXPECT_TRUE(found.done);
   EXPECT_LE(found.error, kOnPath);
-  const JointVector planned = kept.motion()->posture<7, double>(kept.duration());
+  const JointVector planned = kept.motion()->posture<7>(kept.duration());
   EXPECT_LE((tracker.state().q - planned).cwiseAbs().maxCoeff(), 1e-3);
 }
 

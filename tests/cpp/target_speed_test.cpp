@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -42,7 +41,8 @@ class SlowedFilter : public WatchedFilter<Space, Scalar> {
     const auto& [x, xd, xdd] = this->filter.reference();
     ASSERT_TRUE(xd == before.xd && xdd == before.xdd);
     for (int i = 0; i < Space::kRows; ++i) {
-      change_[i] = {AxisState<Scalar>{Scalar(0), xd(i), xdd(i)}, {Scalar(0), -xd(i), -xdd(i)}};
+      change_[i][0] = {Scalar(0), xd(i), xdd(i)};
+      change_[i][1] = {Scalar(0), -xd(i), -xdd(i)};
     }
   }
 
@@ -74,7 +74,7 @@ class SlowedFilter : public WatchedFilter<Space, Scalar> {
   Axis lengths_;
   Axis angles_;
   Scalar dt_;
-  std::array<std::array<AxisState<Scalar>, 2>, Space::kRows> change_;  ///< In the positive and negative direction.
+  AxisState<Scalar> change_[Space::kRows][2];  ///< In the positive and negative direction.
 };
 
 template <typename Kind>

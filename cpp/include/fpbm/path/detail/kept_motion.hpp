@@ -25,14 +25,12 @@ struct KeptMotion {
   static constexpr double kStop = 0.02;
 
   /// The posture at t [s], interpolated linearly.
-  template <int N, typename Scalar>
-  [[nodiscard]] Vector<N, Scalar> posture(double t) const noexcept {
+  template <int N>
+  [[nodiscard]] Vector<N> posture(double t) const noexcept {
     const auto [i, fraction] = place(t);
     const double* const from = &q[i * static_cast<std::size_t>(dof)];
-    Vector<N, Scalar> result(dof);
-    for (Eigen::Index j = 0; j < dof; ++j) {
-      result(j) = static_cast<Scalar>(from[j] + fraction * (from[j + dof] - from[j]));
-    }
+    Vector<N> result(dof);
+    for (Eigen::Index j = 0; j < dof; ++j) result(j) = from[j] + fraction * (from[j + dof] - from[j]);
     return result;
   }
 

@@ -51,18 +51,20 @@ void prepare_source(TargetFilter<Space, Scalar>& source, Scalar speed, bool, Bou
   if (speed != Scalar(0)) source.set_speed(speed);
 }
 template <typename Path, typename Scalar, typename Bounds_, typename JointVector>
-void prepare_source(PathFollower<Path>& source, Scalar speed, bool stopping, Bounds_& bounds,
-                    const JointVector&) noexcept {
+void prepare_source(PathFollower<Path>& source, Scalar speed, [[maybe_unused]] bool stopping,
+                    [[maybe_unused]] Bounds_& bounds, const JointVector&) noexcept {
   if (speed != Scalar(0)) source.set_speed(speed);
-  const KeptMotion* const kept = source.kept();
-  if (kept == nullptr) return;
-  double rate = stopping ? 0.0 : 1.0;
-  if (!stopping && !bounds.empty()) {
-    const auto t = static_cast<double>(source.stop_time());
-    const auto q = kept->template posture<JointVector::RowsAtCompileTime, Scalar>(t);
-    rate = kept->rate(t, static_cast<double>(bounds.closeness(q, Scalar(KeptMotion::kRange))));
+  if constexpr (std::is_same_v<Scalar, double>) {  // Kept paths are in double.
+    const KeptMotion* const kept = source.kept();
+    if (kept == nullptr) return;
+    double rate = stopping ? 0.0 : 1.0;
+    if (!stopping && !bounds.empty()) {
+      const double t = source.stop_time();
+      const auto q = kept->template posture<JointVector::RowsAtCompileTime>(t);
+      rate = kept->rate(t, bounds.closeness(q, KeptMotion::kRange));
+    }
+    source.limit_rate(rate);
   }
-  source.limit_rate(static_cast<Scalar>(rate));
 }
 
 /// Largest fraction of the displacement along a kept path in the coming tick (PathFollower::most_fraction()); 0 for
