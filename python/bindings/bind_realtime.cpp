@@ -196,13 +196,13 @@ class PyTracker {
     return visit("", [&](auto& tracker, auto space) -> PyFollower {
       using Space = decltype(space);
       AnyPath<Space> any = path.as<Space>();
-      std::shared_ptr<const KeptMotion> kept;
+      std::shared_ptr<const PlannedMotion> kept;
       if (keep_path) {
         const Motion<Space> motion{&tracker.arm(), any, scheme_, tracker.state(), TimeGrid<double>(dt_, dt_), nullptr};
         kept = motion.kept_motion(limits_, tracker.bounds(), any.duration(), options.shortest, options.fastest);
         any = AnyPath<Space>(TimedPath(any, kept));
       }
-      return {{{"", AnyFollower<Space>(any, tracker.tip(), ramp, kept)}}};
+      return {{{"", AnyFollower<Space>(any, tracker.tip(), ramp, kept ? &kept->motion : nullptr)}}};
     });
   }
 

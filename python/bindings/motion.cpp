@@ -46,9 +46,9 @@ JointPath<kDynamic> Motion<Space>::joint_path(double duration, double lasting) c
 }
 
 template <typename Space>
-std::shared_ptr<const KeptMotion> Motion<Space>::kept_motion(const JointLimits<kDynamic>& limits, AnyBounds bounds,
-                                                             double duration, double shortest,
-                                                             const FastestOptions& options) const {
+std::shared_ptr<const PlannedMotion> Motion<Space>::kept_motion(const JointLimits<kDynamic>& limits, AnyBounds bounds,
+                                                                double duration, double shortest,
+                                                                const FastestOptions& options) const {
   if (scheme.level != Level::kVelocity) {
     validation::reject("keep_path", " needs a scheme at velocity level, for example MVN() or WMVN(weights)");
   }

@@ -80,8 +80,8 @@ struct Motion {
   const Scheme& scheme;
   State<kDynamic> start;
   TimeGrid<double> grid;
-  const StackOptions* stack;                         ///< Null if the tip's task is the only task.
-  std::shared_ptr<const KeptMotion> kept = nullptr;  ///< Given if the motion keeps its path.
+  const StackOptions* stack;                            ///< Null if the tip's task is the only task.
+  std::shared_ptr<const PlannedMotion> kept = nullptr;  ///< Given if the motion keeps its path.
 
   /// rollout() of the motion. Throws std::invalid_argument if scheme or start do not fit the arm.
   RolloutResult<kDynamic> simulate(const Output<Space>& output) const;
@@ -95,9 +95,9 @@ struct Motion {
   /// The plan of kept_path() for the motion, whose path has a duration [s]. shortest: least duration of the motion
   /// [s]. Throws std::invalid_argument as kept_path() does, and unless the scheme is at velocity level and the motion
   /// starts at rest.
-  [[nodiscard]] std::shared_ptr<const KeptMotion> kept_motion(const JointLimits<kDynamic>& limits, AnyBounds bounds,
-                                                              double duration, double shortest,
-                                                              const FastestOptions& options) const;
+  [[nodiscard]] std::shared_ptr<const PlannedMotion> kept_motion(const JointLimits<kDynamic>& limits, AnyBounds bounds,
+                                                                 double duration, double shortest,
+                                                                 const FastestOptions& options) const;
 
   /// fastest_clock() and play() of the motion, for joint positions along the path.
   FastestClock clock(const Spline<kDynamic>& joints, const JointLimits<kDynamic>& limits, AnyBounds& bounds,

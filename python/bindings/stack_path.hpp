@@ -29,7 +29,7 @@ struct TaskPath {
     std::visit([&](auto& own) { own = std::decay_t<decltype(own)>(Stretched(own, factor)); }, path);
   }
   /// Replaces the clock of the path.
-  void keep(const std::shared_ptr<const KeptMotion>& motion) {
+  void keep(const std::shared_ptr<const PlannedMotion>& motion) {
     std::visit([&](auto& own) { own = std::decay_t<decltype(own)>(TimedPath(own, motion)); }, path);
   }
 };

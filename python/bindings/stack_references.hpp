@@ -42,10 +42,14 @@ class StackReferences {
   friend double most_path_fraction(const StackReferences& references, double dt) noexcept {
     return references.most_fraction(dt);
   }
-  friend void prepare_source(StackReferences& references, double speed, bool stopping, AnyBounds& bounds,
-                             const JointVector& q) noexcept {
+  friend void set_source_speed(StackReferences& references, double speed) noexcept {
     for (const auto& [task, source] : references.sources_) {
-      std::visit([&](auto* each) { prepare_source(*each, speed, stopping, bounds, q); }, source);
+      std::visit([&](auto* each) { set_source_speed(*each, speed); }, source);
+    }
+  }
+  friend void look_ahead(StackReferences& references, bool stopping, AnyBounds& bounds, const JointVector& q) noexcept {
+    for (const auto& [task, source] : references.sources_) {
+      std::visit([&](auto* each) { look_ahead(*each, stopping, bounds, q); }, source);
     }
   }
 

@@ -56,7 +56,7 @@ constexpr double kRamp = 0.5;
 class Followers {
  public:
   Followers(StackReferences& references, const std::vector<TaskPath>& paths, const AnyStack::Point& tip,
-            const std::shared_ptr<const KeptMotion>& kept) {
+            const KeptMotion* kept) {
     each_.reserve(paths.size());  // The sources point to the followers.
     StackReferences::Sources sources;
     for (const auto& [index, any] : paths) {
@@ -139,13 +139,13 @@ template <typename Space>
 RolloutResult<kDynamic> Motion<Space>::track(const LimitOptions& limit_options, const Output<Space>& output) const {
   if (stack == nullptr) {
     const auto tracker = tracker_of<Space>(*arm, *this, limit_options);
-    AnyFollower<Space> follower(path, tracker->tip(), kRamp, kept);
+    AnyFollower<Space> follower(path, tracker->tip(), kRamp, kept ? &kept->motion : nullptr);
     Recorder<Space> record(output, Level::kAcceleration);
     return track_clear(*tracker, follower, *this, output, record);
   }
   const auto tracker = tracker_of<AnyStack::Space>(stack->plan.arm_at(scheme.level), *this, limit_options);
   StackReferences references(stack->plan, tracker->tip());
-  const Followers followers(references, stack->paths, tracker->tip(), kept);
+  const Followers followers(references, stack->paths, tracker->tip(), kept ? &kept->motion : nullptr);
   TaskRecorder<Space> record(*this, output, Level::kAcceleration);
   return track_clear(*tracker, references, *this, output, record);
 }

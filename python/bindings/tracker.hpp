@@ -49,7 +49,8 @@ class AnyTracker {
   /// One tick with a source of references: a Reference, a path, a filter, or StackReferences.
   template <typename Source>
   Result tick(Source&& source) noexcept {
-    prepare_source(source, speed_, stopping_, bounds(), state().q);
+    set_source_speed(source, speed_);
+    look_ahead(source, stopping_, bounds(), state().q);
     const Result result = advance(references_of(Space{}, dt_, source));
     advance_source(source, dt_, stopping_, result.path_fraction);
     return result;

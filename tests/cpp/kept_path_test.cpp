@@ -186,7 +186,7 @@ TEST(KeptPath, is_kept_by_a_clock_that_changes_as_fast_as_the_limits_allow) {
     KeptMotion abrupt = *kept.motion();
     abrupt.ramp = 0.05;
     auto tracker = tracker_of(panda(), kBent);
-    PathFollower follower(kept, tracker.tip(), 0.05, std::make_shared<const KeptMotion>(abrupt));
+    PathFollower follower(kept, tracker.tip(), 0.05, &abrupt);
     const Ride found = ride(tracker, follower, [&](int k) {
       if (k == 600) follower.set_speed(0.4);
     });

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <memory>
-#include <utility>
 
 #include "fpbm/core/detail/quickest_stop.hpp"
 #include "fpbm/core/detail/validation.hpp"
@@ -35,9 +33,8 @@ class PathFollower {
   /// start: origin of the path in the base frame. ramp: duration of a pause from full speed, or of a resumption [s].
   /// With the default, x′(p) ṙ is at most 2.7 /s times the velocity of the path. kept: if given, the path is kept,
   /// and the ramp is at least its least ramp (kept_path()). Throws std::invalid_argument if ramp is not positive.
-  PathFollower(const Path& path, const Point& start, Scalar ramp = Scalar(0.5),
-               std::shared_ptr<const KeptMotion> kept = nullptr)
-      : path_(path), start_(start), kept_(std::move(kept)), clock_{Scalar(1), {}} {
+  PathFollower(const Path& path, const Point& start, Scalar ramp = Scalar(0.5), const KeptMotion* kept = nullptr)
+      : path_(path), start_(start), kept_(kept), clock_{Scalar(1), {}} {
     validation::require_positive("ramp", ramp);
     if (kept_) ramp = std::max(ramp, static_cast<Scalar>(kept_->ramp));
     clock_.stop = {Scalar(4) / (Scalar(3) * ramp), Scalar(16) / (Scalar(3) * ramp * ramp)};
@@ -70,7 +67,7 @@ class PathFollower {
   [[nodiscard]] Scalar speed() const noexcept { return speed_; }
 
   /// The motion along a kept path, or null.
-  [[nodiscard]] const KeptMotion* kept() const noexcept { return kept_.get(); }
+  [[nodiscard]] const KeptMotion* kept() const noexcept { return kept_; }
   /// Path time at which the clock stands after pause() [s].
   [[nodiscard]] Scalar stop_time() const noexcept { return clock_.stop.end_position(now_); }
 
@@ -94,8 +91,8 @@ class PathFollower {
   }
 
   /// Largest fraction for advance() with which the rate of the clock is at most 1; 1 while the clock stands.
-  [[nodiscard]] Scalar most_fraction(Scalar seconds) const noexcept {
-    const Scalar fastest = std::max(now_.v, after(seconds).v);
+  [[nodiscard]] Scalar most_fraction() const noexcept {
+    const Scalar fastest = std::max(now_.v, rate_);
     return fastest > Scalar(0) ? std::max(Scalar(1) / fastest, Scalar(1)) : Scalar(1);
   }
 
@@ -133,7 +130,7 @@ class PathFollower {
   [[nodiscard]] bool is_steady() const noexcept { return now_.v == rate_ && now_.a == Scalar(0); }
 
   /// p, r and ṙ after `seconds` [s]. The bounds on p and r correct round-off errors only.
-  [[nodiscard]] AxisState<Scalar> after(Scalar seconds) const noexcept {
+  [[nodiscard, gnu::noinline]] AxisState<Scalar> after(Scalar seconds) const noexcept {
     if (is_steady()) return {now_.q + rate_ * seconds, rate_, Scalar(0)};
     AxisState<Scalar> next = clock_.change(now_, rate_, seconds);
     next.q = std::clamp(next.q, now_.q, now_.q + seconds);
@@ -144,7 +141,7 @@ class PathFollower {
   Path path_;
   Point start_;
   Point end_;
-  std::shared_ptr<const KeptMotion> kept_;
+  const KeptMotion* kept_;
   bool paused_ = false;
   Scalar most_rate_{1};  ///< limit_rate()
   TimeOptimalAxis<Scalar> clock_;

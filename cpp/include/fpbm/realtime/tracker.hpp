@@ -24,8 +24,7 @@ namespace fpbm {
 /// measured state, for a torque controller. Never pass a measured state to tick(): the feedback would act twice, and
 /// noise would enter the command.
 ///
-/// After construction, no function allocates, throws, locks, does I/O or loops without a bound. The same inputs give
-/// the same bits. If no motion can be computed, the arm brakes.
+/// After construction, no function allocates, throws, locks or does I/O. Equal inputs give equal bits.
 template <typename Arm, typename Space, typename Scheme, typename Bounds_ = Bounds<>>
 class Tracker {
  public:
@@ -80,7 +79,10 @@ class Tracker {
   /// TargetFilter, which continues. For a stack, pass a source for each task in the order of the stack, or References.
   template <typename... Sources>
   Result tick(Sources&... sources) noexcept {
-    (prepare_source(sources, state_.speed, state_.stopping, state_.bounds, state_.tick.joints.q), ...);
+    (set_source_speed(sources, state_.speed), ...);
+    if constexpr (kLevel == Level::kVelocity) {
+      (look_ahead(sources, state_.stopping, state_.bounds, state_.tick.joints.q), ...);
+    }
     const Result result = advance(references_of(Space{}, state_.dt(), sources...));
     (advance_source(sources, state_.dt(), state_.stopping, result.path_fraction), ...);
     return result;
@@ -129,8 +131,7 @@ class Tracker {
     return result;
   }
 
-  /// Sets the speed of the sources of the following ticks: set_speed() of each PathFollower and TargetFilter, for an
-  /// operator's slider. If the fraction is not in (0, 1], returns false without an effect.
+  /// Sets the speed of all followers and filters of the following ticks. Returns false if it is not in (0, 1].
   bool set_speed(Scalar fraction) noexcept { return state_.set_speed(fraction); }
 
   /// Brings every joint to rest as fast as the limits allow, for any reference, until resume() is called. With
@@ -145,8 +146,7 @@ class Tracker {
   [[nodiscard]] const Arm& arm() const noexcept { return arm_; }
   /// Bits of the continuous joints.
   [[nodiscard]] JointBits continuous() const noexcept { return state_.continuous; }
-  /// Enables or disables level k of a stack, counted from 0; commands stay within all bounds. The first level is always
-  /// enabled. If there is no lower level k, returns false without an effect.
+  /// Enables or disables level k > 0 of a stack, within all bounds. If there is no level k, returns false.
   bool enable(int k, bool on) noexcept {
     static_assert(kIsProduct<Space>, "only a stack has levels to enable");
     if (!arm_.enable(k, on)) return false;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "fpbm/path/detail/kept_motion.hpp"
 #include "fpbm/path/detail/stretched.hpp"
@@ -20,10 +21,10 @@ namespace fpbm {
 /// duration: the plan is repeated with the duration found, until the joint path is the same. shortest: least duration
 /// of the motion [s]. bounds: Bounds.
 template <int N, typename Path, typename JointsOf, typename Kept>
-[[nodiscard]] std::shared_ptr<const KeptMotion> kept_motion(const Path& path, double duration,
-                                                            const JointsOf& joints_of, const JointLimits<N>& limits,
-                                                            Kept& bounds, double shortest,
-                                                            const FastestOptions& options) {
+[[nodiscard]] std::shared_ptr<const PlannedMotion> kept_motion(const Path& path, double duration,
+                                                               const JointsOf& joints_of, const JointLimits<N>& limits,
+                                                               Kept& bounds, double shortest,
+                                                               const FastestOptions& options) {
   constexpr int kRounds = 4;
   constexpr int kPlaces = 100;
   constexpr double kSame = 1e-7;  // [rad] or [m]
@@ -46,13 +47,15 @@ template <int N, typename Path, typename JointsOf, typename Kept>
   }
   constexpr double kStep = 0.01;  // [s]: at 2 rad/s and 15 rad/s², interpolated postures are exact to 2e-4 rad.
   const auto steps = static_cast<int>(std::ceil(clock->duration() / kStep)) + 1;
-  KeptMotion motion{*clock, least_ramp(*joints, *clock, limits, options.dt), kStep, limits.lower.size(), {}, {}};
+  std::vector<double> postures;
+  std::vector<double> closeness;
   for (int i = 0; i <= steps; ++i) {
     const Vector<N> q = joints->at(clock->at(i * kStep).s).x;
-    motion.q.insert(motion.q.end(), q.data(), q.data() + q.size());
-    motion.closeness.push_back(bounds.closeness(q, KeptMotion::kRange));
+    postures.insert(postures.end(), q.data(), q.data() + q.size());
+    closeness.push_back(bounds.closeness(q, KeptMotion::kRange));
   }
-  return std::make_shared<const KeptMotion>(std::move(motion));
+  const double ramp = least_ramp(*joints, *clock, limits, options.dt);
+  return std::make_shared<const PlannedMotion>(*clock, ramp, kStep, std::move(postures), std::move(closeness));
 }
 
 /// A path for a PathFollower that keeps the path, from the posture q0 at rest: `path` with the clock of fastest(), at

@@ -2,28 +2,53 @@
 
 #include <memory>
 #include <utility>
+#include <vector>
 
+#include "fpbm/path/detail/fastest_clock.hpp"
 #include "fpbm/path/detail/kept_motion.hpp"
 #include "fpbm/path/reference.hpp"
 
 namespace fpbm {
 
-/// A path whose time law is replaced by the clock of a KeptMotion. Copies share the motion.
+/// The plan of a motion along a path.
+struct PlannedMotion {
+  FastestClock clock;
+  std::vector<double> q;          ///< KeptMotion::q
+  std::vector<double> closeness;  ///< KeptMotion::closeness
+  KeptMotion motion;
+
+  PlannedMotion(const FastestClock& its_clock, double ramp, double step, std::vector<double> postures,
+                std::vector<double> its_closeness)
+      : clock(its_clock),
+        q(std::move(postures)),
+        closeness(std::move(its_closeness)),
+        motion{ramp,
+               step,
+               static_cast<Eigen::Index>(q.size() / closeness.size()),
+               static_cast<Eigen::Index>(closeness.size()),
+               q.data(),
+               closeness.data()} {}
+  PlannedMotion(const PlannedMotion&) = delete;
+  PlannedMotion& operator=(const PlannedMotion&) = delete;
+  ~PlannedMotion() = default;
+};
+
+/// A path whose time law is replaced by the clock of a KeptMotion. Copies share clock and motion.
 template <typename Path>
 class TimedPath {
  public:
   using Scalar = double;
   using Space = typename Path::Space;
 
-  TimedPath(const Path& path, std::shared_ptr<const KeptMotion> motion) : path_(path), motion_(std::move(motion)) {}
+  TimedPath(const Path& path, std::shared_ptr<const PlannedMotion> plan) : path_(path), plan_(std::move(plan)) {}
 
-  [[nodiscard]] double duration() const noexcept { return motion_->clock.duration(); }
-  /// The motion along the path, for a PathFollower.
-  [[nodiscard]] const std::shared_ptr<const KeptMotion>& motion() const noexcept { return motion_; }
+  [[nodiscard]] double duration() const noexcept { return plan_->clock.duration(); }
+  /// The motion along the path, for a PathFollower of this path or a copy.
+  [[nodiscard]] const KeptMotion* motion() const noexcept { return &plan_->motion; }
 
   /// x(p), x′ṗ, x″ṗ² + x′p̈; outside of the motion, at rest at the nearest end.
   [[nodiscard]] Reference<Space> sample(double t) const noexcept {
-    const Phase<double> clock = motion_->clock.at(t);
+    const Phase<double> clock = plan_->clock.at(t);
     Reference<Space> reference = path_.sample(clock.s);
     reference.xdd = reference.xdd * (clock.sd * clock.sd) + reference.xd * clock.sdd;
     reference.xd *= clock.sd;
@@ -32,7 +57,7 @@ class TimedPath {
 
  private:
   Path path_;
-  std::shared_ptr<const KeptMotion> motion_;
+  std::shared_ptr<const PlannedMotion> plan_;
 };
 
 }  // namespace fpbm

@@ -103,9 +103,12 @@ template <typename TrackerState, typename Desired, typename Rows_>
   if (state.progress.stalled()) result.status = worse(result.status, Status::kStalled);
   if (!state.stops() && result.status < Status::kStalled) {
     if (state.admits(rows, u)) return u;
-    if (state.on_path()) {
-      const auto box = state.limits().box(state.tick.joints, state.tick.last);
-      if (const auto found = motion_on_path(desired, box, rows, state.most_path_fraction)) return *found;
+    if constexpr (TrackerState::kLevel == Level::kVelocity) {
+      if (state.on_path()) {
+        const auto box = state.limits().box(state.tick.joints, state.tick.last);
+        auto found = u;
+        if (find_motion_on_path(desired, box, rows, state.most_path_fraction, found)) return found;
+      }
     }
   }
   return limited_motion(state, desired, u, rows, result);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
 
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/types.hpp"
@@ -30,18 +29,20 @@ template <typename Desired, int N, typename Scalar>
 template <typename TrackerState, typename Desired, typename Rows_>
 void report_path(const TrackerState& state, const Desired& desired, const Rows_& rows,
                  const typename TrackerState::JointState& next, typename TrackerState::Result& result) noexcept {
-  if (!state.on_path()) return;
-  result.path_fraction = path_fraction(desired, state.tick.motion_to(next), state.most_path_fraction);
-  if (result.path_fraction < 1) {
-    result.status = worse(result.status, rows.admit(desired.u) ? Status::kSlowed : Status::kBlocked);
+  if constexpr (TrackerState::kLevel == Level::kVelocity) {
+    if (!state.on_path()) return;
+    result.path_fraction = path_fraction(desired, state.tick.motion_to(next), state.most_path_fraction);
+    if (result.path_fraction < 1) {
+      result.status = worse(result.status, rows.admit(desired.u) ? Status::kSlowed : Status::kBlocked);
+    }
   }
 }
 
-/// The velocity on the path with the fraction σ in [0, most] nearest to 1 that the limits and the rows admit, if there
-/// is one. box: of the velocities.
+/// Sets u to the velocity on the path with the fraction σ in [0, most] nearest to 1 that the limits and the rows admit.
+/// Returns false without an effect if they admit none. box: of the velocities.
 template <typename Desired, typename Box, int N, int P, typename Scalar>
-[[nodiscard]] std::optional<Vector<N, Scalar>> motion_on_path(const Desired& desired, const Box& box,
-                                                              const Rows<N, P, Scalar>& rows, Scalar most) noexcept {
+[[nodiscard]] bool find_motion_on_path(const Desired& desired, const Box& box, const Rows<N, P, Scalar>& rows,
+                                       Scalar most, Vector<N, Scalar>& u) noexcept {
   const auto& still = desired.still;
   const Vector<N, Scalar> change = desired.u - still;
   Scalar low(0);
@@ -61,8 +62,9 @@ template <typename Desired, typename Box, int N, int P, typename Scalar>
       narrow(rows.along(k, change), -std::numeric_limits<Scalar>::infinity(), -rows.excess(k, still));
     }
   }
-  if (!(low <= high)) return {};
-  return box.nearest(still + std::clamp(Scalar(1), low, high) * change);
+  if (!(low <= high)) return false;
+  u = box.nearest(still + std::clamp(Scalar(1), low, high) * change);
+  return true;
 }
 
 }  // namespace fpbm

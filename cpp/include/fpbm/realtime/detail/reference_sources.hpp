@@ -41,20 +41,22 @@ void advance_source(TargetFilter<Space, Scalar>& source, Scalar, bool, Scalar) n
   source.advance();
 }
 
-/// Sets the speed of a source before a tick, if the speed is not 0. Limits the rate of the clock of a kept path: to 0
-/// while the arm stops, and before postures that are closer to the bounds than planned, since an obstacle has moved. q:
-/// posture of the arm.
-template <typename Space, typename Scalar, typename Bounds_, typename JointVector>
-void prepare_source(const Reference<Space, Scalar>&, Scalar, bool, Bounds_&, const JointVector&) noexcept {}
-template <typename Space, typename Scalar, typename Bounds_, typename JointVector>
-void prepare_source(TargetFilter<Space, Scalar>& source, Scalar speed, bool, Bounds_&, const JointVector&) noexcept {
+/// Sets the speed of a source before a tick, if the speed is not 0.
+template <typename Space, typename Scalar>
+void set_source_speed(const Reference<Space, Scalar>&, Scalar) noexcept {}
+template <typename Source, typename Scalar>
+void set_source_speed(Source& source, Scalar speed) noexcept {
   if (speed != Scalar(0)) source.set_speed(speed);
 }
-template <typename Path, typename Scalar, typename Bounds_, typename JointVector>
-void prepare_source(PathFollower<Path>& source, Scalar speed, [[maybe_unused]] bool stopping,
-                    [[maybe_unused]] Bounds_& bounds, const JointVector&) noexcept {
-  if (speed != Scalar(0)) source.set_speed(speed);
-  if constexpr (std::is_same_v<Scalar, double>) {  // Kept paths are in double.
+
+/// Limits the rate of the clock of a kept path before a tick: to 0 while the arm stops, and before postures that are
+/// closer to the bounds than planned, since an obstacle has moved. q: posture of the arm.
+template <typename Source, typename Bounds_, typename JointVector>
+void look_ahead(const Source&, bool, Bounds_&, const JointVector&) noexcept {}
+template <typename Path, typename Bounds_, typename JointVector>
+void look_ahead(PathFollower<Path>& source, [[maybe_unused]] bool stopping, [[maybe_unused]] Bounds_& bounds,
+                const JointVector&) noexcept {
+  if constexpr (std::is_same_v<typename JointVector::Scalar, double>) {  // Kept paths are in double.
     const KeptMotion* const kept = source.kept();
     if (kept == nullptr) return;
     double rate = stopping ? 0.0 : 1.0;
@@ -74,8 +76,8 @@ template <typename Source, typename Scalar>
   return Scalar(0);
 }
 template <typename Path, typename Scalar>
-[[nodiscard]] Scalar most_path_fraction(const PathFollower<Path>& source, Scalar dt) noexcept {
-  return source.kept() != nullptr ? source.most_fraction(dt) : Scalar(0);
+[[nodiscard]] Scalar most_path_fraction(const PathFollower<Path>& source, Scalar) noexcept {
+  return source.kept() != nullptr ? source.most_fraction() : Scalar(0);
 }
 
 /// Reference of a single task from its source. The overload for StackSpace has a source for each task.
@@ -87,7 +89,8 @@ template <typename Space, typename Scalar, typename Source, typename = std::enab
 /// References of a tick of dt [s] from its sources.
 template <typename Space, typename Scalar, typename... Sources>
 [[nodiscard]] TickReferences<Space, Scalar> references_of(Space, Scalar dt, const Sources&... sources) noexcept {
-  const Scalar most = std::max({most_path_fraction(sources, dt)...});
+  Scalar most(0);
+  ((most = std::max(most, most_path_fraction(sources, dt))), ...);
   auto references =
       TickReferences<Space, Scalar>::of([&](Scalar t) noexcept { return joined(Space{}, t, sources...); }, dt);
   references.most_path_fraction = most;
