@@ -76,7 +76,7 @@ class PathFollower {
   [[nodiscard]] bool done() const noexcept { return now_.q >= path_.duration(); }
 
   /// Reference after `seconds` ≥ 0 [s].
-  [[nodiscard]] Reference<Space, Scalar> ahead(Scalar seconds) const noexcept {
+  [[nodiscard, gnu::noinline]] Reference<Space, Scalar> ahead(Scalar seconds) const noexcept {
     const auto [p, r, rd] = after(seconds);
     if (done() || p > path_.duration()) return Reference<Space, Scalar>::hold(end_);
     Reference<Space, Scalar> reference = sample_within(path_, p, now_.q);
@@ -130,7 +130,7 @@ class PathFollower {
   [[nodiscard]] bool is_steady() const noexcept { return now_.v == rate_ && now_.a == Scalar(0); }
 
   /// p, r and ṙ after `seconds` [s]. The bounds on p and r correct round-off errors only.
-  [[nodiscard, gnu::noinline]] AxisState<Scalar> after(Scalar seconds) const noexcept {
+  [[nodiscard]] AxisState<Scalar> after(Scalar seconds) const noexcept {
     if (is_steady()) return {now_.q + rate_ * seconds, rate_, Scalar(0)};
     AxisState<Scalar> next = clock_.change(now_, rate_, seconds);
     next.q = std::clamp(next.q, now_.q, now_.q + seconds);

@@ -6,7 +6,7 @@
 
 namespace fpbm {
 
-/// What a PathFollower knows of the motion along a path that it keeps. The numbers belong to a PlannedMotion.
+/// The motion along a path that a PathFollower keeps. The numbers belong to a PlannedMotion.
 struct KeptMotion {
   double ramp;              ///< Least ramp of the follower with which no change of its rate exceeds a bound [s].
   double step;              ///< Time between postures [s].

@@ -44,8 +44,12 @@ void advance_source(TargetFilter<Space, Scalar>& source, Scalar, bool, Scalar) n
 /// Sets the speed of a source before a tick, if the speed is not 0.
 template <typename Space, typename Scalar>
 void set_source_speed(const Reference<Space, Scalar>&, Scalar) noexcept {}
-template <typename Source, typename Scalar>
-void set_source_speed(Source& source, Scalar speed) noexcept {
+template <typename Path, typename Scalar>
+void set_source_speed(PathFollower<Path>& source, Scalar speed) noexcept {
+  if (speed != Scalar(0)) source.set_speed(speed);
+}
+template <typename Space, typename Scalar>
+void set_source_speed(TargetFilter<Space, Scalar>& source, Scalar speed) noexcept {
   if (speed != Scalar(0)) source.set_speed(speed);
 }
 
