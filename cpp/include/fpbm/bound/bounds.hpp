@@ -30,8 +30,8 @@ namespace fpbm {
 ///   require(q)                 throws std::invalid_argument if the posture q violates the bound
 ///   rows(next, rows)           adds g·u ≤ b for the next motion (NextMotion), at most kRows rows
 ///   accepts(from, stop)        whether the tick and the Stop after the tick keep the bound; true without a certificate
-///   gaps(q, range, f)          for InverseKinematics and kept paths: calls f(gap, gradient) for each gap below the
-///   range speed_ratio(q, qd)         for fastest() only, of a bound on speeds: largest ratio of a speed to its bound
+///   gaps(q, range, f)          for InverseKinematics and kept paths: calls f(gap, gradient) for each gap below range
+///   speed_ratio(q, qd)         for fastest() only, of a bound on speeds: largest ratio of a speed to its bound
 ///
 /// rows() and accepts() are noexcept, and rows() is called before accepts(). A bound allocates at construction only.
 template <typename... Each>

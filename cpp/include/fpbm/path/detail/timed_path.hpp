@@ -33,7 +33,7 @@ struct PlannedMotion {
   ~PlannedMotion() = default;
 };
 
-/// A path whose time law is replaced by the clock of a KeptMotion. Copies share clock and motion.
+/// A path whose time law is replaced by the clock of a PlannedMotion. Copies share the plan.
 template <typename Path>
 class TimedPath {
  public:

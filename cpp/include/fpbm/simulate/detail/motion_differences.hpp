@@ -60,7 +60,7 @@ template <int N>
   constexpr double kRate = 4.0 / 3.0;  // Bounds of PathFollower on ṙ and r̈, times the ramp and its square.
   constexpr double kChange = 16.0 / 3.0;
   constexpr int kSteps = 16;
-  // Between the ticks. Without it, 1 of 40 random paths is left when an operator changes the speed.
+  // For the time between ticks. With 1, 1 of 40 random motions leaves its path when an operator changes the speed.
   constexpr double kSafety = 1.02;
   const JointLimits<N> complete = limits.complete();
   double inverse = std::numeric_limits<double>::infinity();  // 1/ramp.
