@@ -17,9 +17,9 @@ struct PlannedMotion {
   std::vector<double> closeness;  ///< KeptMotion::closeness
   KeptMotion motion;
 
-  PlannedMotion(const FastestClock& its_clock, double ramp, double step, std::vector<double> postures,
+  PlannedMotion(FastestClock its_clock, double ramp, double step, std::vector<double> postures,
                 std::vector<double> its_closeness)
-      : clock(its_clock),
+      : clock(std::move(its_clock)),
         q(std::move(postures)),
         closeness(std::move(its_closeness)),
         motion{ramp,
