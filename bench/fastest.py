@@ -1,4 +1,4 @@
-"""Motions in the least time on random paths: `python bench/fastest.py [--count 30]` prints tables.
+"""Motions in the least time on random paths: `python bench/fastest.py [--count 30] [--level velocity]` prints tables.
 
 For each preset arm, the paths are splines through 4 to 8 random points from random postures, under MVN with a constant
 orientation (position tasks with 6 joints). Paths that leave the workspace or the range of a joint are drawn again.
@@ -7,9 +7,9 @@ orientation (position tasks with 6 joints). Paths that leave the workspace or th
    distance from the path, and processor time of fp.fastest() per second of motion.
 2. TOPP-RA (`pip install toppra`) on the same joint paths and bounds: without bounds on jerk, and the duration with
    bounds on jerk relative to the duration of TOPP-RA, which has no bounds on jerk.
-3. Trackers with keep_path, on paths that last half of the least duration: alone, while an operator changes the speed,
-   pauses, stops and resumes at random moments, and with a ball that is put into the path for 2 s. The largest errors,
-   the ratios to the bounds, and the duration relative to the least duration.
+3. Trackers with keep_path, under MVN or, at acceleration level, FPBM, on paths that last half of the least duration:
+   alone, while an operator changes the speed, pauses, stops and resumes at random moments, and with a ball that is put
+   into the path for 2 s. The largest errors, the ratios to the bounds, and the duration relative to the least duration.
 4. Ruckig (`pip install ruckig`) on straight lines of a gantry, from rest to rest: the duration relative to Ruckig.
 5. Weights: the duration under WMVN with the weights 1/A^2, A the bounds on acceleration, relative to MVN.
 """
@@ -110,11 +110,11 @@ def ball(centre: Any) -> fp.Capsule:
 class Ride:
     """A motion of a tracker along a kept path, which lasts half of the least duration, tick by tick."""
 
-    def __init__(self, run: fp.Run, bounds: list[fp.Clearance]) -> None:
+    def __init__(self, run: fp.Run, level: str, bounds: list[fp.Clearance]) -> None:
         assert isinstance(run.path, fp.Waypoints)
         self.tracker = fp.Tracker(
             run.arm,
-            fp.MVN(k=5.0),
+            fp.MVN(k=5.0) if level == "velocity" else fp.FPBM(0.6, np.ones(run.arm.dof), 20.0, 100.0),
             run.q0,
             task=run.task,
             limits=run.limits,
@@ -175,7 +175,7 @@ def with_ball(ride: Ride, place: Any) -> bool:
     return ride.waited > 100
 
 
-def kept_rides(name: str, run: fp.Run, random: np.random.Generator) -> dict[str, list[float]]:
+def kept_rides(name: str, run: fp.Run, level: str, random: np.random.Generator) -> dict[str, list[float]]:
     """For each kind of ride: error, ratios to the bounds, duration relative to the least duration."""
     found = {}
     for kind in ("alone", "operator", "ball"):
@@ -186,7 +186,7 @@ def kept_rides(name: str, run: fp.Run, random: np.random.Generator) -> dict[str,
             try:
                 bounds = [fp.Clearance.preset(name, obstacles=[ball(FAR)])]
                 near = fp.Clearance.preset(name, obstacles=[ball(place)]).nearest(run.arm, run.q0)
-                ride = Ride(run, bounds)
+                ride = Ride(run, level, bounds)
             except fp.ParameterError:  # No capsules, or the start is too close to a self-collision.
                 continue
             if near is None or near.distance < 0.05:
@@ -194,7 +194,7 @@ def kept_rides(name: str, run: fp.Run, random: np.random.Generator) -> dict[str,
             if not with_ball(ride, place):
                 continue
         else:
-            ride = Ride(run, bounds)
+            ride = Ride(run, level, bounds)
             if kind == "operator":
                 with_operator(ride, random)
             else:
@@ -236,6 +236,7 @@ def print_table(headings: list[str], rows: list[list[Any]]) -> None:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=30, help="paths for each arm")
+    parser.add_argument("--level", choices=("velocity", "acceleration"), default="velocity", help="of the trackers")
     parser.add_argument("--seed", type=int, default=0)
     given = parser.parse_args()
     worst: dict[str, list[list[float]]] = defaultdict(list)
@@ -250,7 +251,7 @@ def main() -> int:
             worst[name].append([*ratios(run), np.abs(run.error).max(), 1e3 * seconds, run.t[-1]])
             loose = fp.fastest(arm, run.path, run.scheme, run.q0, dt=DT, task=run.task, limits=free)
             reference = toppra_duration(loose)
-            for kind, values in kept_rides(name, run, random).items():
+            for kind, values in kept_rides(name, run, given.level, random).items():
                 rides[kind].append(values)
             weighted = duration_with_weights(run, 1.0 / bounded.acceleration**2)
             against[name].append([loose.t[-1] / reference, run.t[-1] / reference, weighted / run.t[-1]])

@@ -93,7 +93,10 @@ class PyTracker {
   PyTracker(const Model& model, const Scheme& scheme, const ArrayLike& q0, const OptionalArray& qd0,
             const OptionalArray& qdd0, const std::string& task, const py::object& stack, const py::object& limits,
             const TrackerOptions<>& options, const py::object& given)
-      : dof_(model.dof()), dt_(options.dt), scheme_(scheme), limits_(limits_of(model, limits)) {
+      : dof_(model.dof()),
+        dt_(options.dt),
+        scheme_(scheme.with_null_damping(options.null_damping)),
+        limits_(limits_of(model, limits)) {
     State<kDynamic> start{joint_vector(q0, "q0", dof_), JointVector::Zero(dof_)};
     if (qd0) start.qd = joint_vector(*qd0, "qd0", dof_);
     const JointVector before = qdd0 ? joint_vector(*qdd0, "qdd0", dof_) : JointVector::Zero(dof_);
@@ -196,13 +199,12 @@ class PyTracker {
     return visit("", [&](auto& tracker, auto space) -> PyFollower {
       using Space = decltype(space);
       AnyPath<Space> any = path.as<Space>();
-      std::shared_ptr<const PlannedMotion> kept;
       if (keep_path) {
         const Motion<Space> motion{&tracker.arm(), any, scheme_, tracker.state(), TimeGrid<double>(dt_, dt_), nullptr};
-        kept = motion.kept_motion(limits_, tracker.bounds(), any.duration(), options.shortest, options.fastest);
-        any = AnyPath<Space>(TimedPath(any, kept));
+        any = AnyPath<Space>(TimedPath(
+            any, motion.kept_motion(limits_, tracker.bounds(), any.duration(), options.shortest, options.fastest)));
       }
-      return {{{"", AnyFollower<Space>(any, tracker.tip(), ramp, kept ? &kept->motion : nullptr)}}};
+      return {{{"", AnyFollower<Space>(any, tracker.tip(), ramp)}}};
     });
   }
 
@@ -269,7 +271,7 @@ class PyTracker {
 
   int dof_;
   double dt_;
-  Scheme scheme_;
+  Scheme scheme_;  ///< For plans, with the null-space damping of the tracker.
   JointLimits<kDynamic> limits_;
   Any any_;
 };
@@ -471,8 +473,8 @@ keep_path : bool
     Whether the tip stays on the path if the path is faster than the limits allow (docs: Paths in the least time). The
     clock of fastest(), slowed by the reserve, replaces the time law. Obstacles, other targets and disturbances, which
     the plan does not know, slow the clock further. The ramp is extended until no change of the speed exceeds a bound.
-    With keep_first_level, stop stops the arm on the path. Needs a scheme at velocity level, and an arm at rest; takes
-    some 50 ms.
+    With keep_first_level, stop stops the arm on the path. Needs an arm at rest; takes some 50 ms, at acceleration level
+    some 150 ms.
 reserve : float
     Fraction by which the motion lasts longer than the least time.
 

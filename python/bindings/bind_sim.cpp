@@ -143,7 +143,9 @@ Outcomes rollout(const Model& arm, const Path& path, const Scheme& scheme, const
       const LimitOptions& limits = *options.limits();
       const auto [tip_speed, shortest] = kept;
       const FastestOptions fastest{dt, tip_speed, kUnbounded, limits.reserve};
-      motion.kept = motion.kept_motion(limits.limits, limits.bounds, options.duration(), shortest, fastest);
+      const Scheme damped = scheme.with_null_damping(limits.options.null_damping);
+      const Motion<Space> planned{any, same, damped, start, options.grid(), motion.stack};
+      motion.kept = planned.kept_motion(limits.limits, limits.bounds, options.duration(), shortest, fastest);
       same = AnyPath<Space>(TimedPath(same, motion.kept));
       motion.grid = TimeGrid<double>(same.duration(), motion.grid.dt(), hold);
       if (stack) {
@@ -178,7 +180,7 @@ Outcomes fastest(const Model& arm, const Path& path, const Scheme& scheme, const
     using Space = decltype(space);
     const AnyPath<Space> same = path.as<Space>();
     Motion<Space> motion{any, same, scheme, start, TimeGrid<double>(duration, duration), stack ? &*stack : nullptr};
-    const JointPath<kDynamic> along = motion.joint_path(duration, duration);
+    const JointPath<kDynamic> along = motion.joint_path(duration);
     if (!along.joints) {
       Arrays last;
       last["q"] = array_of(along.result.last.q);

@@ -1,5 +1,6 @@
 #include "motion.hpp"
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -23,24 +24,33 @@ FastestClock Motion<Space>::clock(const Spline<kDynamic>& joints, const JointLim
 }
 
 template <typename Space>
-JointPath<kDynamic> Motion<Space>::joint_path(double duration, double lasting) const {
-  const double factor = lasting / duration;
-  const AnyPath<Space> stretched(Stretched(path, factor));
+JointPath<kDynamic> Motion<Space>::joint_path(double duration, const std::shared_ptr<const PlannedMotion>& plan) const {
+  const AnyPath<Space> timed = plan ? AnyPath<Space>(TimedPath(path, plan)) : path;
   std::optional<StackOptions> tasks;
   if (stack != nullptr) {
     tasks = *stack;
-    tasks->duration *= factor;
-    for (TaskPath& each : tasks->paths) each.stretch(factor);
+    if (plan) {
+      tasks->duration = timed.duration();
+      for (TaskPath& each : tasks->paths) each.keep(plan);
+    }
   }
-  return fpbm::joint_path<kDynamic>(duration, [&](int intervals, std::vector<JointVector>& rows) {
-    const double whole = tasks ? tasks->duration : stretched.duration();  // Equal to `lasting` up to round-off.
+  return fpbm::joint_path<kDynamic>(duration, plan != nullptr, [&](int intervals, JointNodes<kDynamic>& nodes) {
+    const double whole = tasks ? tasks->duration : timed.duration();
     const TimeGrid<double> grid_of_nodes(whole, whole / intervals);
-    const Motion nodes{arm, stretched, scheme, start, grid_of_nodes, tasks ? &*tasks : nullptr};
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> q(nodes.grid.samples(), start.q.size());
+    const Motion motion{arm, timed, scheme, start, grid_of_nodes, tasks ? &*tasks : nullptr};
+    using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    std::array<Rows, 3> rows;  // Positions, velocities and accelerations.
+    for (Rows& each : rows) each.resize(motion.grid.samples(), start.q.size());
     Output<Space> output;
-    output.buffers.q = q.data();
-    const auto result = nodes.simulate(output);
-    for (Eigen::Index i = 0; i < result.samples; ++i) rows.emplace_back(q.row(i).transpose());
+    output.buffers.q = rows[0].data();
+    output.buffers.qd = rows[1].data();
+    output.buffers.qdd = rows[2].data();
+    const auto result = motion.simulate(output);
+    for (Eigen::Index i = 0; i < result.samples; ++i) nodes.q.emplace_back(rows[0].row(i).transpose());
+    if (failed(result.status)) return result;
+    nodes.end.resize(2, start.q.size());
+    nodes.end << rows[1].bottomRows(1), rows[2].bottomRows(1);
+    if (plan) nodes = nodes.at_places(plan->clock, duration);
     return result;
   });
 }
@@ -49,14 +59,11 @@ template <typename Space>
 std::shared_ptr<const PlannedMotion> Motion<Space>::kept_motion(const JointLimits<kDynamic>& limits, AnyBounds bounds,
                                                                 double duration, double shortest,
                                                                 const FastestOptions& options) const {
-  if (scheme.level != Level::kVelocity) {
-    validation::reject("keep_path", " needs a scheme at velocity level, for example MVN() or WMVN(weights)");
-  }
   constexpr double kAtRest = 1e-6;  // [rad/s]: decaying motions of a tracker that has stopped.
   if (start.qd.cwiseAbs().maxCoeff() > kAtRest) {
     validation::reject("qd0", ": must be zero with keep_path: stop the arm first");
   }
-  const auto joints_of = [&](double lasting) { return joint_path(duration, lasting); };
+  const auto joints_of = [&](const auto& plan) { return joint_path(duration, plan); };
   return fpbm::kept_motion(path, duration, joints_of, limits, bounds, shortest, options);
 }
 

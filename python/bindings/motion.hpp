@@ -90,11 +90,12 @@ struct Motion {
   /// fit.
   RolloutResult<kDynamic> track(const LimitOptions& limit_options, const Output<Space>& output) const;
 
-  /// joint_path() of the motion, whose path has a duration [s], if the path lasts `lasting` seconds.
-  [[nodiscard]] JointPath<kDynamic> joint_path(double duration, double lasting) const;
+  /// joint_path() of the motion, whose path has a duration [s], with the clock of a plan, or null.
+  [[nodiscard]] JointPath<kDynamic> joint_path(double duration,
+                                               const std::shared_ptr<const PlannedMotion>& plan = nullptr) const;
   /// The plan of kept_path() for the motion, whose path has a duration [s]. shortest: least duration of the motion
-  /// [s]. Throws std::invalid_argument as kept_path() does, and unless the scheme is at velocity level and the motion
-  /// starts at rest.
+  /// [s]. The scheme has the damping of the tracker. Throws std::invalid_argument as kept_path() does, and unless the
+  /// motion starts at rest.
   [[nodiscard]] std::shared_ptr<const PlannedMotion> kept_motion(const JointLimits<kDynamic>& limits, AnyBounds bounds,
                                                                  double duration, double shortest,
                                                                  const FastestOptions& options) const;

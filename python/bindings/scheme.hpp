@@ -37,6 +37,14 @@ struct Scheme {
   double manipulability_gain = 0.0;
   SingularDamping<> singular = SingularDamping<>::off();
 
+  /// The scheme with the null-space damping of a tracker, if it has none.
+  [[nodiscard]] Scheme with_null_damping(double damping) const {
+    Scheme damped = *this;
+    if (level == Level::kAcceleration && null_damping == 0.0) damped.null_damping = damping;
+    damped.kept_ = {};
+    return damped;
+  }
+
   /// The scheme for an arm, with all objectives. Throws std::invalid_argument if a parameter is out of range or does
   /// not fit the arm.
   template <typename Space>

@@ -83,7 +83,6 @@ PyFollower StackLoop::follow(const std::vector<std::pair<std::string, const Path
                              const FollowOptions& options) const {
   StackOptions stack{references_.plan_now(), {}, 0.0};
   for (const auto& [name, path] : paths) stack.add(name, *path);
-  std::shared_ptr<const PlannedMotion> kept;
   if (options.keep_path) {
     const auto keep = [&](const auto& first) {
       using Space = typename std::decay_t<decltype(first)>::Space;
@@ -91,18 +90,17 @@ PyFollower StackLoop::follow(const std::vector<std::pair<std::string, const Path
       const Motion<Space> motion{nullptr, first, options.scheme, start, TimeGrid<double>(dt_, dt_), &stack};
       return motion.kept_motion(options.limits, tracker().bounds(), stack.duration, options.shortest, options.fastest);
     };
-    kept = std::visit(keep, stack.paths.front().path);
+    const auto kept = std::visit(keep, stack.paths.front().path);
     for (TaskPath& each : stack.paths) each.keep(kept);
   }
-  const KeptMotion* const motion = kept ? &kept->motion : nullptr;
   PyFollower result;
   for (const auto& [index, any] : stack.paths) {
     const StackTask& task = plan().tasks[index];
     const Transform<> at = task.frame_of(tracker().tip());
     const auto follow = [&](const auto& path) -> PyFollower::Any {
       using Space = typename std::decay_t<decltype(path)>::Space;
-      if constexpr (std::is_same_v<Space, Pose>) return AnyFollower<Space>(path, at, options.ramp, motion);
-      if constexpr (!std::is_same_v<Space, Pose>) return AnyFollower<Space>(path, at.p, options.ramp, motion);
+      if constexpr (std::is_same_v<Space, Pose>) return AnyFollower<Space>(path, at, options.ramp);
+      if constexpr (!std::is_same_v<Space, Pose>) return AnyFollower<Space>(path, at.p, options.ramp);
     };
     result.each.emplace_back(task.name, std::visit(follow, any));
   }

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "fpbm/any/detail/any_path.hpp"
-#include "fpbm/path/detail/stretched.hpp"
 #include "fpbm/path/detail/timed_path.hpp"
 #include "fpbm/simulate/rollout.hpp"
 #include "scheme.hpp"
@@ -24,10 +23,6 @@ struct TaskPath {
   std::size_t task;  ///< Index among the plan's tasks.
   std::variant<AnyPath<Position<3>>, AnyPath<Pose>> path;
 
-  /// Multiplies the duration of the path by a factor.
-  void stretch(double factor) {
-    std::visit([&](auto& own) { own = std::decay_t<decltype(own)>(Stretched(own, factor)); }, path);
-  }
   /// Replaces the clock of the path.
   void keep(const std::shared_ptr<const PlannedMotion>& motion) {
     std::visit([&](auto& own) { own = std::decay_t<decltype(own)>(TimedPath(own, motion)); }, path);

@@ -33,8 +33,9 @@ class StackReferences {
   /// The references of the sources after `seconds` become the targets. Returns all targets.
   const Reference<Space>& take(double seconds) noexcept;
   /// After a tick of dt [s].
-  friend void advance_source(StackReferences& references, double dt, bool stopping, double fraction) noexcept {
-    references.advance(dt, stopping, fraction);
+  friend void advance_source(StackReferences& references, double dt, Level level, bool stopping,
+                             double fraction) noexcept {
+    references.advance(dt, level, stopping, fraction);
   }
   friend Reference<Space> joined(Space, double seconds, const StackReferences& references) noexcept {
     return references.ahead(seconds);
@@ -47,9 +48,10 @@ class StackReferences {
       std::visit([&](auto* each) { set_source_speed(*each, speed); }, source);
     }
   }
-  friend void look_ahead(StackReferences& references, bool stopping, AnyBounds& bounds, const JointVector& q) noexcept {
+  friend void look_ahead(StackReferences& references, bool stopping, AnyBounds& bounds,
+                         State<kDynamic>& planned) noexcept {
     for (const auto& [task, source] : references.sources_) {
-      std::visit([&](auto* each) { look_ahead(*each, stopping, bounds, q); }, source);
+      std::visit([&](auto* each) { look_ahead(*each, stopping, bounds, planned); }, source);
     }
   }
 
@@ -61,7 +63,7 @@ class StackReferences {
   [[nodiscard]] StackPlan plan_now() const;
 
  private:
-  void advance(double dt, bool stopping, double fraction) noexcept;
+  void advance(double dt, Level level, bool stopping, double fraction) noexcept;
   [[nodiscard]] double most_fraction(double dt) const noexcept;
   [[nodiscard]] StackTarget target_of(const StackTask& task) const noexcept;
 
@@ -71,3 +73,10 @@ class StackReferences {
 };
 
 }  // namespace fpbm::bindings
+
+namespace fpbm {
+
+template <>
+inline constexpr bool kMayKeep<bindings::StackReferences> = true;
+
+}  // namespace fpbm

@@ -82,9 +82,9 @@ const Reference<StackReferences::Space>& StackReferences::take(double seconds) n
   return held_;
 }
 
-void StackReferences::advance(double dt, bool stopping, double fraction) noexcept {
+void StackReferences::advance(double dt, Level level, bool stopping, double fraction) noexcept {
   for (const auto& [task, source] : sources_) {
-    std::visit([&](auto* each) { advance_source(*each, dt, stopping, fraction); }, source);
+    std::visit([&](auto* each) { advance_source(*each, dt, level, stopping, fraction); }, source);
   }
   take(0.0);
 }

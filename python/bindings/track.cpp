@@ -55,8 +55,7 @@ constexpr double kRamp = 0.5;
 /// The paths of a stack, each from the frame of its task.
 class Followers {
  public:
-  Followers(StackReferences& references, const std::vector<TaskPath>& paths, const AnyStack::Point& tip,
-            const KeptMotion* kept) {
+  Followers(StackReferences& references, const std::vector<TaskPath>& paths, const AnyStack::Point& tip) {
     each_.reserve(paths.size());  // The sources point to the followers.
     StackReferences::Sources sources;
     for (const auto& [index, any] : paths) {
@@ -64,7 +63,7 @@ class Followers {
       std::visit(
           [&](const auto& path) {
             using Follower = PathFollower<std::decay_t<decltype(path)>>;
-            each_.emplace_back(Follower(path, point_of<typename Follower::Space>(task->frame_of(tip)), kRamp, kept));
+            each_.emplace_back(Follower(path, point_of<typename Follower::Space>(task->frame_of(tip)), kRamp));
             sources.emplace_back(task, &std::get<Follower>(each_.back()));
           },
           any);
@@ -139,13 +138,13 @@ template <typename Space>
 RolloutResult<kDynamic> Motion<Space>::track(const LimitOptions& limit_options, const Output<Space>& output) const {
   if (stack == nullptr) {
     const auto tracker = tracker_of<Space>(*arm, *this, limit_options);
-    AnyFollower<Space> follower(path, tracker->tip(), kRamp, kept ? &kept->motion : nullptr);
+    AnyFollower<Space> follower(path, tracker->tip(), kRamp);
     Recorder<Space> record(output, Level::kAcceleration);
     return track_clear(*tracker, follower, *this, output, record);
   }
   const auto tracker = tracker_of<AnyStack::Space>(stack->plan.arm_at(scheme.level), *this, limit_options);
   StackReferences references(stack->plan, tracker->tip());
-  const Followers followers(references, stack->paths, tracker->tip(), kept ? &kept->motion : nullptr);
+  const Followers followers(references, stack->paths, tracker->tip());
   TaskRecorder<Space> record(*this, output, Level::kAcceleration);
   return track_clear(*tracker, references, *this, output, record);
 }

@@ -41,7 +41,7 @@ class AnyTracker {
   using Point = typename Space::template Point<double>;
   using Result = Tick<Space, kDynamic>;
 
-  explicit AnyTracker(double dt) : dt_(dt) {}
+  AnyTracker(double dt, Level level) : dt_(dt), level_(level) {}
   AnyTracker(const AnyTracker&) = delete;
   AnyTracker& operator=(const AnyTracker&) = delete;
   virtual ~AnyTracker() = default;
@@ -50,12 +50,21 @@ class AnyTracker {
   template <typename Source>
   Result tick(Source&& source) noexcept {
     set_source_speed(source, speed_);
-    look_ahead(source, stopping_, bounds(), state().q);
-    const Result result = advance(references_of(Space{}, dt_, source));
-    advance_source(source, dt_, stopping_, result.path_fraction);
+    State<kDynamic> planned = state();
+    look_ahead(source, stopping_, bounds(), planned);
+    approach(planned);
+    const auto references = references_of(Space{}, dt_, source);
+    Result result;
+    if constexpr (kOfPath<std::decay_t<decltype(references)>>) {
+      result = advance(references);
+    } else {
+      result = advance({references, 0.0});
+    }
+    advance_source(source, dt_, level_, stopping_, result.path_fraction);
     return result;
   }
-  virtual Result advance(const TickReferences<Space>& references) noexcept = 0;
+  virtual Result advance(const PathReferences<Space>& references) noexcept = 0;
+  virtual void approach(const State<kDynamic>& planned) noexcept = 0;
   /// Throws std::invalid_argument if the scheme is of velocity level.
   [[nodiscard]] virtual Result resolve_measured(const State<kDynamic>& measured, const Reference<Space>& reference) = 0;
 
@@ -88,6 +97,7 @@ class AnyTracker {
 
  protected:
   double dt_;
+  Level level_;
   double speed_ = 0.0;  ///< Fraction of set_speed(); 0: each source has its own speed.
   bool stopping_ = false;
 };

@@ -18,11 +18,12 @@ class TrackerAt final : public AnyTracker<Space> {
   using typename AnyTracker<Space>::Result;
 
   TrackerAt(const typename TrackedArm<Space>::type& arm, const Scheme_& scheme, const TrackerStart& from)
-      : AnyTracker<Space>(from.options.dt),
+      : AnyTracker<Space>(from.options.dt, kLevel),
         tracker_(arm, Space{}, scheme, from.start, from.options, Limits<kLevel, kDynamic>(from.limits, from.options.dt),
                  from.qdd0, from.bounds) {}
 
-  Result advance(const TickReferences<Space>& references) noexcept override { return tracker_.advance(references); }
+  Result advance(const PathReferences<Space>& references) noexcept override { return tracker_.advance(references); }
+  void approach(const State<kDynamic>& planned) noexcept override { tracker_.approach(planned); }
   [[nodiscard]] Result resolve_measured(const State<kDynamic>& measured, const Reference<Space>& reference) override {
     if constexpr (kLevel == Level::kAcceleration) {
       return tracker_.resolve_measured(measured.q, measured.qd, reference);

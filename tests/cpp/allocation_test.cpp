@@ -212,7 +212,7 @@ TEST(NoAllocation, on_a_kept_path) {
   const Limits<Level::kVelocity, 7> limits(arm.limits(), options.dt);
   const Vector<7> rest = Vector<7>::Zero();
   Tracker tracker(arm, Pose{}, scheme, State<7>{q0, rest}, options, limits, rest, bounds);
-  PathFollower follower(kept, tracker.tip(), 0.1, kept.motion());
+  PathFollower follower(kept, tracker.tip(), 0.1);
   const AllocationWatch watch;
   for (int i = 0; i < 4000 && !follower.done(); ++i) {
     if (i == 300) follower.pause();

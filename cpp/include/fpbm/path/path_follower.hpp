@@ -20,7 +20,7 @@ namespace fpbm {
 /// and |r̈| ≤ 16/3/ramp² (TimeOptimalAxis): from 0 to 1 in one ramp (argument of the constructor), and in at most 1.25
 /// ramps if the change reverses another change. r is always in [0, 1].
 ///
-/// A follower of a kept path (kept_path()) has priority over time: a tracker at velocity level slows the clock instead
+/// A follower of a kept path (kept_path()) has priority over time: a tracker slows the clock instead
 /// of leaving the path, if the limits or the bounds do not admit the motion.
 template <typename Path_>
 class PathFollower {
@@ -31,12 +31,12 @@ class PathFollower {
   using Point = typename Space::template Point<Scalar>;
 
   /// start: origin of the path in the base frame. ramp: duration of a pause from full speed, or of a resumption [s].
-  /// With the default, x′(p) ṙ is at most 2.7 /s times the velocity of the path. kept: if given, the path is kept,
-  /// and the ramp is at least its least ramp (kept_path()). Throws std::invalid_argument if ramp is not positive.
-  PathFollower(const Path& path, const Point& start, Scalar ramp = Scalar(0.5), const KeptMotion* kept = nullptr)
-      : path_(path), start_(start), kept_(kept), clock_{Scalar(1), {}} {
+  /// With the default, x′(p) ṙ is at most 2.7 /s times the velocity of the path. If the path is kept, the ramp is at
+  /// least its least ramp (kept_path()). Throws std::invalid_argument if ramp is not positive.
+  PathFollower(const Path& path, const Point& start, Scalar ramp = Scalar(0.5))
+      : path_(path), start_(start), clock_{Scalar(1), {}} {
     validation::require_positive("ramp", ramp);
-    if (kept_) ramp = std::max(ramp, static_cast<Scalar>(kept_->ramp));
+    if (kept() != nullptr) ramp = std::max(ramp, static_cast<Scalar>(kept()->ramp));
     clock_.stop = {Scalar(4) / (Scalar(3) * ramp), Scalar(16) / (Scalar(3) * ramp * ramp)};
     end_ = Space::template compose<Scalar>(start, path.sample(path.duration()).x);
   }
@@ -67,7 +67,12 @@ class PathFollower {
   [[nodiscard]] Scalar speed() const noexcept { return speed_; }
 
   /// The motion along a kept path, or null.
-  [[nodiscard]] const KeptMotion* kept() const noexcept { return kept_; }
+  [[nodiscard]] const KeptMotion* kept() const noexcept { return motion_along(path_); }
+  /// Posture and velocity of the joints on a kept path, now.
+  template <int N>
+  [[nodiscard]] State<N, Scalar> planned() const noexcept {
+    return {kept()->template posture<N>(now_.q), kept()->template velocity<N>(now_.q) * now_.v};
+  }
   /// Path time at which the clock stands after pause() [s].
   [[nodiscard]] Scalar stop_time() const noexcept { return clock_.stop.end_position(now_); }
 
@@ -96,12 +101,15 @@ class PathFollower {
     return fastest > Scalar(0) ? std::max(Scalar(1) / fastest, Scalar(1)) : Scalar(1);
   }
 
-  /// Advances the clock by `seconds` [s]. fraction: displacement along the path that the arm has moved, relative to the
-  /// displacement of the reference.
-  void advance(Scalar seconds, Scalar fraction = Scalar(1)) noexcept {
+  /// Advances the clock by `seconds` [s]. fraction: rate at the end of the tick, relative to the rate of the reference
+  /// (Tick::path_fraction). At velocity level, the rate is constant in the tick; at acceleration level, ṙ is constant.
+  void advance(Scalar seconds, Scalar fraction = Scalar(1), Level level = Level::kVelocity) noexcept {
     if (fraction != Scalar(1)) {
       const AxisState<Scalar> next = after(seconds);
-      now_ = {now_.q + fraction * (next.q - now_.q), std::min(fraction * next.v, Scalar(1)), Scalar(0)};
+      const Scalar displacement = level == Level::kVelocity
+                                      ? fraction * (next.q - now_.q)
+                                      : next.q - now_.q - (Scalar(1) - fraction) * next.v * seconds / Scalar(2);
+      now_ = {now_.q + std::max(displacement, Scalar(0)), std::min(fraction * next.v, Scalar(1)), Scalar(0)};
       ticks_ = Scalar(0);
       return;
     }
@@ -141,7 +149,6 @@ class PathFollower {
   Path path_;
   Point start_;
   Point end_;
-  const KeptMotion* kept_;
   bool paused_ = false;
   Scalar most_rate_{1};  ///< limit_rate()
   TimeOptimalAxis<Scalar> clock_;

@@ -20,8 +20,8 @@ struct TickOfRows {
   Scalar scale;                ///< Task scale: 1 for the whole task, 0 if the arm brakes.
   JointBits saturated;         ///< Bit i is set if joint i is on a bound.
   Vector<Rows, Scalar> error;  ///< x ⊖ f(q) at the start of the tick [m, rad].
-  /// Displacement along a kept path (PathFollower) in the tick, relative to the displacement of the reference. Below 1,
-  /// the status is at least kSlowed. Above 1, the clock slows down less than asked.
+  /// Rate of the clock of a kept path (PathFollower) at the end of the tick, relative to the rate of the reference.
+  /// Below 1, the status is at least kSlowed. Above 1, the clock slows down less than asked.
   Scalar path_fraction = Scalar(1);
 };
 

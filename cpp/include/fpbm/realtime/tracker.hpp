@@ -80,16 +80,18 @@ class Tracker {
   template <typename... Sources>
   Result tick(Sources&... sources) noexcept {
     (set_source_speed(sources, state_.speed), ...);
-    if constexpr (kLevel == Level::kVelocity) {
-      (look_ahead(sources, state_.stopping, state_.bounds, state_.tick.joints.q), ...);
-    }
+    (look_ahead(sources, state_.stopping, state_.bounds, state_.planned), ...);
     const Result result = advance(references_of(Space{}, state_.dt(), sources...));
-    (advance_source(sources, state_.dt(), state_.stopping, result.path_fraction), ...);
+    (advance_source(sources, state_.dt(), kLevel, state_.stopping, result.path_fraction), ...);
     return result;
   }
 
-  /// One tick with references.
-  Result advance(const References& references) noexcept {
+  /// Sets the state of the joints on a kept path that the null space of the next tick() with references approaches.
+  void approach(const JointState& planned) noexcept { state_.planned = planned; }
+
+  /// One tick with references: TickReferences or PathReferences.
+  template <typename References_>
+  Result advance(const References_& references) noexcept {
     Result result = state_.idle(state_.tick.joints);
     const auto desired = desire(arm_, scheme_, state_, references, result);
     finish_tick(desired, state_.rows(desired.u), result);
@@ -144,6 +146,8 @@ class Tracker {
   [[nodiscard]] const JointVector& acceleration() const noexcept { return state_.tick.last; }
   [[nodiscard]] const JointVector& acceleration_change() const noexcept { return state_.tick.change; }
   [[nodiscard]] const Arm& arm() const noexcept { return arm_; }
+  /// The scheme, with the damping of the options.
+  [[nodiscard]] const Scheme& scheme() const noexcept { return scheme_; }
   /// Bits of the continuous joints.
   [[nodiscard]] JointBits continuous() const noexcept { return state_.continuous; }
   /// Enables or disables level k > 0 of a stack, within all bounds. If there is no level k, returns false.

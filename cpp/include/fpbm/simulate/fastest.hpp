@@ -121,8 +121,9 @@ template <typename Arm, typename Path, typename Scheme, typename Kept, typename 
 RolloutResult<Arm::kDof> fastest(const Arm& arm, const Path& path, const Scheme& scheme, const Vector<Arm::kDof>& q0,
                                  const JointLimits<Arm::kDof>& limits, Kept&& bounds, const FastestOptions& options,
                                  Recorder&& record) {
+  static_assert(Scheme::kLevel == Level::kVelocity, "a motion in the least time needs a scheme at velocity level");
   validation::require_positive("dt", options.dt);
-  const auto path_of = joint_path_of(arm, path, scheme, q0, path.duration());
+  const auto path_of = joint_path_of(arm, path, scheme, q0);
   if (!path_of.joints) return path_of.result;
   for (const double p : path_of.joints->times()) {
     if (!bounds.empty()) bounds.require(path_of.joints->at(p).x);

@@ -8,32 +8,51 @@
 #include <vector>
 
 #include "fpbm/path/detail/kept_motion.hpp"
-#include "fpbm/path/detail/stretched.hpp"
 #include "fpbm/path/detail/timed_path.hpp"
 #include "fpbm/simulate/detail/joint_path.hpp"
 #include "fpbm/simulate/fastest.hpp"
 
 namespace fpbm {
 
+/// The plan of a motion along a path with the clock of fastest(), of joint positions along the path.
+template <int N, typename Path, typename Kept>
+[[nodiscard]] std::shared_ptr<const PlannedMotion> planned_motion(const Spline<N>& joints, const Path& path,
+                                                                  const JointLimits<N>& limits, Kept& bounds,
+                                                                  double shortest, const FastestOptions& options) {
+  constexpr double kStep = 0.01;  // [s]: at 2 rad/s and 15 rad/s², interpolated postures are exact to 2e-4 rad.
+  FastestClock clock = fastest_clock(joints, path, limits, bounds, options);
+  if (shortest > clock.duration()) clock.stretch(std::ceil(shortest / options.dt - 1e-9) * options.dt);
+  const auto steps = static_cast<int>(std::ceil(clock.duration() / kStep)) + 1;
+  std::vector<double> postures;
+  std::vector<double> closeness;
+  for (int i = 0; i <= steps; ++i) {
+    const Vector<N> q = joints.at(clock.at(i * kStep).s).x;
+    postures.insert(postures.end(), q.data(), q.data() + q.size());
+    closeness.push_back(bounds.closeness(q, KeptMotion::kRange));
+  }
+  const double ramp = least_ramp(joints, clock, limits, options.dt);
+  return std::make_shared<const PlannedMotion>(std::move(clock), ramp, kStep, std::move(postures),
+                                               std::move(closeness));
+}
+
 /// The plan of a motion along a path of a duration [s], which a PathFollower keeps.
 ///
-/// joints_of(lasting): JointPath of the path if it lasts `lasting` seconds. A motion in the null space depends on this
-/// duration: the plan is repeated with the duration found, until the joint path is the same. shortest: least duration
-/// of the motion [s]. bounds: Bounds.
+/// joints_of(plan): JointPath of the path with the clock of a plan, or null, with its own time law. Accelerations of a
+/// scheme and motions in the null space depend on the clock: the plan is repeated with the clock found, until the joint
+/// path is the same. shortest: least duration of the motion [s]. bounds: Bounds.
 template <int N, typename Path, typename JointsOf, typename Kept>
 [[nodiscard]] std::shared_ptr<const PlannedMotion> kept_motion(const Path& path, double duration,
                                                                const JointsOf& joints_of, const JointLimits<N>& limits,
                                                                Kept& bounds, double shortest,
                                                                const FastestOptions& options) {
-  constexpr int kRounds = 4;
+  constexpr int kRounds = 8;
   constexpr int kPlaces = 100;
-  constexpr double kSame = 1e-7;  // [rad] or [m]
+  constexpr double kSame = 1e-4;  // [rad] or [m]; each round reduces the deviation to about a tenth.
   std::optional<Spline<N>> joints;
-  std::optional<FastestClock> clock;
-  double lasting = duration;
+  std::shared_ptr<const PlannedMotion> plan;
   for (int round = 0; round < kRounds; ++round) {
-    JointPath<N> along = joints_of(lasting);
-    require_followed(along, lasting);
+    JointPath<N> along = joints_of(plan);
+    require_followed(along, plan ? plan->clock.duration() : duration);
     double deviation = joints ? 0.0 : std::numeric_limits<double>::infinity();
     for (int k = 0; joints && k <= kPlaces; ++k) {
       const double p = duration * k / kPlaces;
@@ -41,38 +60,23 @@ template <int N, typename Path, typename JointsOf, typename Kept>
     }
     if (deviation < kSame) break;
     joints = std::move(along.joints);
-    clock = fastest_clock(*joints, path, limits, bounds, options);
-    if (shortest > clock->duration()) clock->stretch(std::ceil(shortest / options.dt - 1e-9) * options.dt);
-    lasting = clock->duration();
+    plan = planned_motion(*joints, path, limits, bounds, shortest, options);
   }
-  constexpr double kStep = 0.01;  // [s]: at 2 rad/s and 15 rad/s², interpolated postures are exact to 2e-4 rad.
-  const auto steps = static_cast<int>(std::ceil(clock->duration() / kStep)) + 1;
-  std::vector<double> postures;
-  std::vector<double> closeness;
-  for (int i = 0; i <= steps; ++i) {
-    const Vector<N> q = joints->at(clock->at(i * kStep).s).x;
-    postures.insert(postures.end(), q.data(), q.data() + q.size());
-    closeness.push_back(bounds.closeness(q, KeptMotion::kRange));
-  }
-  const double ramp = least_ramp(*joints, *clock, limits, options.dt);
-  return std::make_shared<const PlannedMotion>(*clock, ramp, kStep, std::move(postures), std::move(closeness));
+  return plan;
 }
 
 /// A path for a PathFollower that keeps the path, from the posture q0 at rest: `path` with the clock of fastest(), at
 /// least as long as `path` (docs/paths.md, In a control loop).
 ///
-/// options.reserve is for disturbances and an operator; usual value: 0.05. The scheme, at velocity level, is the scheme
-/// of the tracker. Pass motion() of the result to the follower. The path must begin and end at rest with zero
-/// acceleration. Throws std::invalid_argument if an argument is out of range, or the arm cannot follow the path.
-/// Allocates.
+/// options.reserve is for disturbances and an operator; usual value: 0.05. The scheme is the scheme of the tracker.
+/// The path must begin and end at rest with zero acceleration. Throws std::invalid_argument if an argument is out of
+/// range, or the arm cannot follow the path. Allocates.
 template <typename Arm, typename Path, typename Scheme, typename Kept>
 [[nodiscard]] TimedPath<Path> kept_path(const Arm& arm, const Path& path, const Scheme& scheme,
                                         const Vector<Arm::kDof>& q0, const JointLimits<Arm::kDof>& limits,
                                         Kept&& bounds, const FastestOptions& options) {
   const double duration = path.duration();
-  const auto joints_of = [&](double lasting) {
-    return joint_path_of(arm, Stretched(path, lasting / duration), scheme, q0, duration);
-  };
+  const auto joints_of = [&](const auto& plan) { return joint_path_of(arm, path, scheme, q0, plan); };
   return {path, kept_motion(path, duration, joints_of, limits, bounds, duration, options)};
 }
 

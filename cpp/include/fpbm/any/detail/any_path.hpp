@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "fpbm/path/detail/kept_motion.hpp"
 #include "fpbm/path/path.hpp"
 #include "fpbm/path/reference.hpp"
 
@@ -19,6 +20,8 @@ class AnyPath {
   explicit AnyPath(const Path& path) : held_(std::make_shared<const Held<Path>>(path)), duration_(path.duration()) {}
 
   [[nodiscard]] double duration() const noexcept { return duration_; }
+  /// The motion along a kept path (TimedPath), or null.
+  [[nodiscard]] const KeptMotion* motion() const noexcept { return held_->motion(); }
   [[nodiscard]] Reference<Space> sample(double t) const noexcept { return held_->sample(t, t); }
   [[nodiscard]] Reference<Space> sample(double t, double since) const noexcept { return held_->sample(t, since); }
 
@@ -28,12 +31,14 @@ class AnyPath {
     Holder(const Holder&) = delete;
     Holder& operator=(const Holder&) = delete;
     virtual ~Holder() = default;
+    [[nodiscard]] virtual const KeptMotion* motion() const noexcept = 0;
     [[nodiscard]] virtual Reference<Space> sample(double t, double since) const noexcept = 0;
   };
 
   template <typename Path>
   struct Held final : Holder {
     explicit Held(const Path& path_) : path(path_) {}
+    [[nodiscard]] const KeptMotion* motion() const noexcept override { return motion_along(path); }
     [[nodiscard]] Reference<Space> sample(double t, double since) const noexcept override {
       return sample_within(path, t, since);
     }

@@ -87,6 +87,13 @@ class FastestClock {
     rate_ = times_.back() / duration;
   }
 
+  /// Time at which the clock is at p [s].
+  [[nodiscard]] double time_at(double p) const noexcept {
+    const double place = std::max((p - start_) / clock_.width(), 0.0);
+    const std::size_t i = std::min(static_cast<std::size_t>(place), clock_.intervals() - 1);
+    return (times_[i] + time_in(i, place - static_cast<double>(i))) / rate_;
+  }
+
   /// p, ṗ and p̈ at t [s]; outside of the motion, at the nearest end.
   [[nodiscard]] Phase<double> at(double t) const noexcept {
     const double own = std::clamp(t * rate_, 0.0, times_.back());

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <type_traits>
+#include <utility>
 
 #include "fpbm/core/types.hpp"
 
@@ -31,6 +33,23 @@ struct KeptMotion {
     return result;
   }
 
+  /// The velocity at t [s], interpolated linearly between central differences.
+  template <int N>
+  [[nodiscard]] Vector<N> velocity(double t) const noexcept {
+    const double place = std::min(std::max(t / step - 0.5, 0.0), static_cast<double>(count - 2));
+    const auto i = static_cast<Eigen::Index>(place);
+    const double fraction = place - static_cast<double>(i);
+    const double* const from = q + i * dof;
+    const bool last = i + 2 >= count;
+    Vector<N> result(dof);
+    for (Eigen::Index j = 0; j < dof; ++j) {
+      const double now = from[j + dof] - from[j];
+      const double next = last ? 0.0 : from[j + 2 * dof] - from[j + dof];
+      result.coeffRef(j) = (now + fraction * (next - now)) / step;
+    }
+    return result;
+  }
+
   /// Largest rate of the clock if the closeness in the posture at t is `now` [m]: 1 as planned, 0 if a gap that was
   /// above kRange is now kStop.
   [[nodiscard]] double rate(double t, double now) const noexcept {
@@ -46,5 +65,18 @@ struct KeptMotion {
     return static_cast<Eigen::Index>(std::min(t / step, static_cast<double>(count - 2)));
   }
 };
+
+/// Whether a path may be kept: it has a member motion().
+template <typename Path, typename = void>
+inline constexpr bool kMayBeKept = false;
+template <typename Path>
+inline constexpr bool kMayBeKept<Path, std::void_t<decltype(std::declval<const Path&>().motion())>> = true;
+
+/// The motion along a kept path, or null.
+template <typename Path>
+[[nodiscard]] const KeptMotion* motion_along([[maybe_unused]] const Path& path) noexcept {
+  if constexpr (kMayBeKept<Path>) return path.motion();
+  return nullptr;
+}
 
 }  // namespace fpbm

@@ -33,7 +33,8 @@ struct PlannedMotion {
   ~PlannedMotion() = default;
 };
 
-/// A path whose time law is replaced by the clock of a PlannedMotion. Copies share the plan.
+/// A path whose time law is replaced by the clock of a PlannedMotion. Copies share the plan. Without a plan, the path
+/// itself.
 template <typename Path>
 class TimedPath {
  public:
@@ -42,12 +43,13 @@ class TimedPath {
 
   TimedPath(const Path& path, std::shared_ptr<const PlannedMotion> plan) : path_(path), plan_(std::move(plan)) {}
 
-  [[nodiscard]] double duration() const noexcept { return plan_->clock.duration(); }
-  /// The motion along the path, for a PathFollower of this path or a copy.
-  [[nodiscard]] const KeptMotion* motion() const noexcept { return &plan_->motion; }
+  [[nodiscard]] double duration() const noexcept { return plan_ ? plan_->clock.duration() : path_.duration(); }
+  /// The motion along the path, which a PathFollower keeps.
+  [[nodiscard]] const KeptMotion* motion() const noexcept { return plan_ ? &plan_->motion : nullptr; }
 
   /// x(p), x′ṗ, x″ṗ² + x′p̈; outside of the motion, at rest at the nearest end.
   [[nodiscard]] Reference<Space> sample(double t) const noexcept {
+    if (!plan_) return path_.sample(t);
     const Phase<double> clock = plan_->clock.at(t);
     Reference<Space> reference = path_.sample(clock.s);
     reference.xdd = reference.xdd * (clock.sd * clock.sd) + reference.xd * clock.sdd;

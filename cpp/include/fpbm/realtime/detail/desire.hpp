@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <type_traits>
 
 #include "fpbm/linalg/detail/null_basis.hpp"
 #include "fpbm/model/kinematics.hpp"
@@ -12,13 +14,15 @@
 
 namespace fpbm {
 
-/// Result of desire().
-template <typename Loop, typename Space, int N, typename Scalar>
+/// Result of desire(). kOnPath: whether the references may be of a kept path.
+template <typename Loop, typename Space, int N, typename Scalar, bool kOnPath_ = false>
 struct Desired {
+  static constexpr bool kOnPath = kOnPath_;
   Loop loop;                     ///< Kinematics in the middle of the tick, and the motion of the first level.
   Reference<Space, Scalar> now;  ///< Reference at the start of the tick, not corrected.
   Vector<N, Scalar> u;           ///< Desired motion: accelerations [rad/s²], or velocities [rad/s].
-  Vector<N, Scalar> still{};     ///< On a kept path: the desired velocities for a reference at rest [rad/s].
+  std::conditional_t<kOnPath, Vector<N, Scalar>, std::nullptr_t>
+      still{};  ///< On a kept path: the desired motion for a reference that stops in the tick.
 };
 
 /// Begins the correction of the references with the errors at the start of a tick.
@@ -37,17 +41,52 @@ void move_away(TrackerState& state, Desired& desired) noexcept {
   }
 }
 
+/// Adds the null-space acceleration toward the planned state of a kept path, since a motion in the null space does not
+/// stop with the clock.
+template <typename TrackerState, typename Desired>
+void approach_plan(const TrackerState& state, Desired& desired) noexcept {
+  using Scalar = typename TrackerState::Scalar;
+  // Critically damped, to 1 % in 1.3 s, as the usual gains of a task.
+  constexpr Scalar kStiffness = Scalar(25);
+  constexpr Scalar kDamping = Scalar(10);
+  const auto& now = state.tick.joints;
+  const auto& planned = state.planned;
+  const auto toward = entrywise(now.q, [&](Eigen::Index i) {
+    return kStiffness * (planned.q.coeff(i) - now.q.coeff(i)) + kDamping * (planned.qd.coeff(i) - now.qd.coeff(i));
+  });
+  const auto motion = null_space_motion(jacobian_in_metres(desired.loop.kinematics), toward);
+  desired.u += motion;
+  desired.still += motion;
+}
+
+/// The reference `middle` of a tick, for a reference that stops in the tick: at velocity level, at rest in the tick; at
+/// acceleration level, at rest at the end of the tick.
+template <Level kLevel, typename Space, typename Scalar>
+[[nodiscard]] Reference<Space, Scalar> at_rest(Reference<Space, Scalar> middle,
+                                               const TickReferences<Space, Scalar>& references) noexcept {
+  if constexpr (kLevel == Level::kVelocity) {
+    middle.xd -= references.template middle<kLevel>(references.change()).xd;
+  } else {
+    middle.xdd -= references.stages[2].xd / references.dt;
+  }
+  return middle;
+}
+
 /// First step of a tick: the motion of the scheme in the middle of the tick (TickState::update_middle()), with
 /// corrected references (Correction, HeldLevel, LowerLevels). Sets the error and the status of the result. If the
 /// status is a failure, the desired motion is the present motion.
-template <typename Arm, typename Scheme, typename TrackerState, typename Space, typename Scalar>
-[[nodiscard]] auto desire(const Arm& arm, const Scheme& scheme, TrackerState& state,
-                          TickReferences<Space, Scalar> references, typename TrackerState::Result& result) noexcept {
+template <typename Arm, typename Scheme, typename TrackerState, typename References>
+[[nodiscard]] auto desire(const Arm& arm, const Scheme& scheme, TrackerState& state, References references,
+                          typename TrackerState::Result& result) noexcept {
+  using Space = typename TrackerState::Space;
+  using Scalar = typename TrackerState::Scalar;
   using Loop = ClosedLoop<Arm, Scheme, Space>;
   using JointVector = typename TrackerState::JointVector;
-  if (TrackerState::kLevel == Level::kVelocity) state.most_path_fraction = references.most_path_fraction;
+  constexpr bool kOnPath = kOfPath<References>;
+  state.most_path_fraction = Scalar(0);
+  if constexpr (kOnPath) state.most_path_fraction = references.most_path_fraction;
   const auto& joints = state.tick.joints;
-  Desired<Loop, Space, Arm::kDof, Scalar> desired{
+  Desired<Loop, Space, Arm::kDof, Scalar, kOnPath> desired{
       {arm, scheme, {}, joints, filled<JointVector>(joints.q.size())}, {}, state.tick.motion_to(joints)};
   auto& kinematics = desired.loop.kinematics;
   points_of(arm, joints.q, kinematics, 0);
@@ -63,11 +102,9 @@ template <typename Arm, typename Scheme, typename TrackerState, typename Space, 
     for (auto& stage : references.stages) stage = state.correction(stage);
   }
   const auto middle = state.tick.update_middle(desired.loop, references, gains_of<Scalar>(scheme));
-  if constexpr (TrackerState::kLevel == Level::kVelocity) {
+  if constexpr (kOnPath) {
     if (state.on_path()) {
-      auto at_rest = middle;
-      at_rest.xd -= references.template middle<Level::kVelocity>(state.tick.reference_change).xd;
-      (void)desired.loop.resolve(at_rest);  // If this fails, the reference of the path fails also.
+      (void)desired.loop.resolve(at_rest<TrackerState::kLevel>(middle, references));  // Fails only if `middle` fails.
       desired.still = desired.loop.motion();
     }
   }
@@ -79,6 +116,9 @@ template <typename Arm, typename Scheme, typename TrackerState, typename Space, 
   state.tick.reference_change = references.change();
   desired.u = state.lower_levels.rests() ? state.tick.slowed() : desired.loop.motion();
   if (state.bounds.moves_away()) move_away(state, desired);
+  if constexpr (kOnPath && TrackerState::kLevel == Level::kAcceleration) {
+    if (state.on_path()) approach_plan(state, desired);
+  }
   return desired;
 }
 

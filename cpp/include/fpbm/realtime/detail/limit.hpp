@@ -103,7 +103,7 @@ template <typename TrackerState, typename Desired, typename Rows_>
   if (state.progress.stalled()) result.status = worse(result.status, Status::kStalled);
   if (!state.stops() && result.status < Status::kStalled) {
     if (state.admits(rows, u)) return u;
-    if constexpr (TrackerState::kLevel == Level::kVelocity) {
+    if constexpr (Desired::kOnPath) {
       if (state.on_path()) {
         const auto box = state.limits().box(state.tick.joints, state.tick.last);
         auto found = u;

@@ -9,13 +9,14 @@
 #include "fpbm/linalg/detail/entrywise.hpp"
 #include "fpbm/linalg/detail/sums.hpp"
 
-/// A tick at velocity level on a kept path (docs/paths.md, In a control loop). The velocity of the scheme is linear in
-/// the velocity of the reference. With the fraction σ of the velocity along the path, the velocity of the joints is
-/// still + σ (u − still), where `still` is the velocity of the scheme for a reference at rest. The tip stays on the
-/// path for every σ.
+/// A tick on a kept path (docs/paths.md, In a control loop). The motion of a scheme is linear in the motion of the
+/// reference. With the fraction σ of the rate of the clock at the end of the tick, the motion of the joints is
+/// still + σ (u − still), where `still` is the motion of the scheme for a reference that stops in the tick: the
+/// velocity for a reference at rest, or the acceleration for a reference at rest at the end of the tick. The tip stays
+/// on the path for every σ.
 namespace fpbm {
 
-/// The fraction σ in [0, most] to which a velocity u of the joints corresponds: the nearest σ.
+/// The fraction σ in [0, most] to which a motion u of the joints corresponds: the nearest σ.
 template <typename Desired, int N, typename Scalar>
 [[nodiscard]] Scalar path_fraction(const Desired& desired, const Vector<N, Scalar>& u, Scalar most) noexcept {
   const auto change = [&](Eigen::Index i) { return desired.u.coeff(i) - desired.still.coeff(i); };
@@ -29,8 +30,8 @@ template <typename Desired, int N, typename Scalar>
 template <typename TrackerState, typename Desired, typename Rows_>
 void report_path(const TrackerState& state, const Desired& desired, const Rows_& rows,
                  const typename TrackerState::JointState& next, typename TrackerState::Result& result) noexcept {
-  if constexpr (TrackerState::kLevel == Level::kVelocity) {
-    if (!state.on_path()) return;
+  if constexpr (Desired::kOnPath) {
+    if (!state.on_path() || next.qd == state.tick.after(desired.u).qd) return;
     result.path_fraction = path_fraction(desired, state.tick.motion_to(next), state.most_path_fraction);
     if (result.path_fraction < 1) {
       result.status = worse(result.status, rows.admit(desired.u) ? Status::kSlowed : Status::kBlocked);
@@ -38,8 +39,8 @@ void report_path(const TrackerState& state, const Desired& desired, const Rows_&
   }
 }
 
-/// Sets u to the velocity on the path with the fraction σ in [0, most] nearest to 1 that the limits and the rows admit.
-/// Returns false without an effect if they admit none. box: of the velocities.
+/// Sets u to the motion on the path with the fraction σ in [0, most] nearest to 1 that the limits and the rows admit.
+/// Returns false without an effect if they admit none. box: of the motions.
 template <typename Desired, typename Box, int N, int P, typename Scalar>
 [[nodiscard]] bool find_motion_on_path(const Desired& desired, const Box& box, const Rows<N, P, Scalar>& rows,
                                        Scalar most, Vector<N, Scalar>& u) noexcept {

@@ -23,21 +23,21 @@ template <typename Source, typename Scalar>
   return source.ahead(seconds);
 }
 
-/// Advances a source after a tick of dt [s]. stopping: whether the arm stops. While the arm stops, a PathFollower
-/// waits, and a TargetFilter continues. fraction: Tick::path_fraction, which slows the clock of a kept path, also while
-/// the arm stops.
+/// Advances a source after a tick of dt [s] at a level. stopping: whether the arm stops. While the arm stops, a
+/// PathFollower waits, and a TargetFilter continues. fraction: Tick::path_fraction, which slows the clock of a kept
+/// path, also while the arm stops.
 template <typename Space, typename Scalar>
-void advance_source(const Reference<Space, Scalar>&, Scalar, bool, Scalar) noexcept {}
+void advance_source(const Reference<Space, Scalar>&, Scalar, Level, bool, Scalar) noexcept {}
 template <typename Path, typename Scalar>
-void advance_source(PathFollower<Path>& source, Scalar dt, bool stopping, Scalar fraction) noexcept {
+void advance_source(PathFollower<Path>& source, Scalar dt, Level level, bool stopping, Scalar fraction) noexcept {
   if (source.kept() != nullptr) {
-    source.advance(dt, fraction);
+    source.advance(dt, fraction, level);
   } else if (!stopping) {
     source.advance(dt);
   }
 }
 template <typename Space, typename Scalar>
-void advance_source(TargetFilter<Space, Scalar>& source, Scalar, bool, Scalar) noexcept {
+void advance_source(TargetFilter<Space, Scalar>& source, Scalar, Level, bool, Scalar) noexcept {
   source.advance();
 }
 
@@ -53,28 +53,31 @@ void set_source_speed(TargetFilter<Space, Scalar>& source, Scalar speed) noexcep
   if (speed != Scalar(0)) source.set_speed(speed);
 }
 
+/// Whether a source may follow a kept path.
+template <typename Source>
+inline constexpr bool kMayKeep = false;
+template <typename Path>
+inline constexpr bool kMayKeep<PathFollower<Path>> = kMayBeKept<Path>;
+
 /// Limits the rate of the clock of a kept path before a tick: to 0 while the arm stops, and before postures that are
-/// closer to the bounds than planned, since an obstacle has moved. q: posture of the arm.
-template <typename Source, typename Bounds_, typename JointVector>
-void look_ahead(const Source&, bool, Bounds_&, const JointVector&) noexcept {}
-template <typename Path, typename Bounds_, typename JointVector>
-void look_ahead(PathFollower<Path>& source, [[maybe_unused]] bool stopping, [[maybe_unused]] Bounds_& bounds,
-                const JointVector&) noexcept {
-  if constexpr (std::is_same_v<typename JointVector::Scalar, double>) {  // Kept paths are in double.
-    const KeptMotion* const kept = source.kept();
-    if (kept == nullptr) return;
-    double rate = stopping ? 0.0 : 1.0;
-    if (!stopping && !bounds.empty()) {
-      const double t = source.stop_time();
-      const auto q = kept->template posture<JointVector::RowsAtCompileTime>(t);
-      rate = kept->rate(t, bounds.closeness(q, KeptMotion::kRange));
-    }
-    source.limit_rate(rate);
+/// closer to the bounds than planned, since an obstacle has moved. Sets the planned state of the joints.
+template <typename Source, typename Bounds_, typename JointState>
+void look_ahead(Source&, bool, Bounds_&, JointState&) noexcept {}
+template <typename Path, typename Bounds_, typename JointState, typename = std::enable_if_t<kMayBeKept<Path>>>
+void look_ahead(PathFollower<Path>& source, bool stopping, Bounds_& bounds, JointState& planned) noexcept {
+  constexpr int N = std::decay_t<decltype(planned.q)>::RowsAtCompileTime;
+  const KeptMotion* const kept = source.kept();
+  if (kept == nullptr) return;
+  double rate = stopping ? 0.0 : 1.0;
+  if (!stopping && !bounds.empty()) {
+    const double t = source.stop_time();
+    rate = kept->rate(t, bounds.closeness(kept->template posture<N>(t), KeptMotion::kRange));
   }
+  source.limit_rate(rate);
+  planned = source.template planned<N>();
 }
 
-/// Largest fraction of the displacement along a kept path in the coming tick (PathFollower::most_fraction()); 0 for
-/// another source.
+/// Largest Tick::path_fraction of a kept path in the coming tick (PathFollower::most_fraction()); 0 for another source.
 template <typename Source, typename Scalar>
 [[nodiscard]] Scalar most_path_fraction(const Source&, Scalar) noexcept {
   return Scalar(0);
@@ -90,15 +93,18 @@ template <typename Space, typename Scalar, typename Source, typename = std::enab
   return source_ahead(source, seconds);
 }
 
-/// References of a tick of dt [s] from its sources.
+/// References of a tick of dt [s] from its sources: PathReferences if a source may follow a kept path.
 template <typename Space, typename Scalar, typename... Sources>
-[[nodiscard]] TickReferences<Space, Scalar> references_of(Space, Scalar dt, const Sources&... sources) noexcept {
-  Scalar most(0);
-  ((most = std::max(most, most_path_fraction(sources, dt))), ...);
-  auto references =
+[[nodiscard]] auto references_of(Space, Scalar dt, const Sources&... sources) noexcept {
+  const auto references =
       TickReferences<Space, Scalar>::of([&](Scalar t) noexcept { return joined(Space{}, t, sources...); }, dt);
-  references.most_path_fraction = most;
-  return references;
+  if constexpr ((kMayKeep<Sources> || ...)) {
+    Scalar most(0);
+    ((most = std::max(most, most_path_fraction(sources, dt))), ...);
+    return PathReferences<Space, Scalar>{references, most};
+  } else {
+    return references;
+  }
 }
 
 }  // namespace fpbm

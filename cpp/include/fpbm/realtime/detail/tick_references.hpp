@@ -12,8 +12,7 @@ namespace fpbm {
 template <typename Space, typename Scalar = double>
 struct TickReferences {
   std::array<Reference<Space, Scalar>, 3> stages;
-  Number<Scalar> dt;                                      ///< Length of the tick [s].
-  Number<Scalar> most_path_fraction = Number<Scalar>(0);  ///< Largest Tick::path_fraction; 0: the path is not kept.
+  Number<Scalar> dt;  ///< Length of the tick [s].
 
   /// ahead(seconds): reference after `seconds` [s] of the tick; noexcept.
   template <typename Ahead>
@@ -57,7 +56,7 @@ struct TickReferences {
   /// for example with lanes.
   template <typename Other>
   [[nodiscard]] TickReferences<Space, Other> from(const typename Space::template Point<Other>& start) const noexcept {
-    TickReferences<Space, Other> placed{{}, dt, most_path_fraction};
+    TickReferences<Space, Other> placed{{}, dt};
     for (std::size_t i = 0; i < stages.size(); ++i) {
       placed.stages[i] = stages[i].template cast<Other>();
       placed.stages[i].x = Space::template compose<Other>(start, placed.stages[i].x);
@@ -65,5 +64,15 @@ struct TickReferences {
     return placed;
   }
 };
+
+/// TickReferences of a path that may be kept.
+template <typename Space, typename Scalar = double>
+struct PathReferences : TickReferences<Space, Scalar> {
+  Number<Scalar> most_path_fraction;  ///< Largest Tick::path_fraction; 0: the path is not kept.
+};
+template <typename References>
+inline constexpr bool kOfPath = false;
+template <typename Space, typename Scalar>
+inline constexpr bool kOfPath<PathReferences<Space, Scalar>> = true;
 
 }  // namespace fpbm

@@ -40,6 +40,7 @@ struct TrackerState {
         acting_ticks(kBounded ? StopPlan<kLevel, N, Scalar>::acting_ticks(limits_) : Scalar(1)),
         progress(options, start.q, continuous_),
         lower_levels(options.stall_time, options.dt),
+        planned(start),
         continuous(continuous_),
         keeps_first_level(options.keep_first_level),
         returning(options.recover_start && !limits_.is_viable(start, qdd0)) {}
@@ -53,6 +54,7 @@ struct TrackerState {
   Progress<Space, N, Scalar> progress;
   typename LowerLevelsOf<Space, Scalar>::type lower_levels;
   std::conditional_t<kHasLevels, HeldLevel<Space, Scalar>, NoHeldLevel> held_level;
+  JointState planned;    ///< Of a kept path, at the start of the tick.
   JointBits continuous;  ///< Bits of the continuous joints.
   bool keeps_first_level;
   bool returning;  ///< Whether the joints return from a start outside their bounds.

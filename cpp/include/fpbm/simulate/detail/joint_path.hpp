@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "fpbm/core/detail/validation.hpp"
 #include "fpbm/core/status.hpp"
+#include "fpbm/path/detail/timed_path.hpp"
 #include "fpbm/path/spline.hpp"
 #include "fpbm/simulate/rollout.hpp"
 #include "fpbm/simulate/time_grid.hpp"
@@ -22,45 +24,87 @@ struct JointPath {
   std::optional<Spline<N>> joints;
 };
 
+/// Joint positions of a motion at equal steps, and the velocity and the acceleration at the end, where the joints of
+/// some schemes move in the null space.
+template <int N>
+struct JointNodes {
+  std::vector<Vector<N>> q;
+  typename Spline<N>::Rates end;
+
+  /// The spline of the positions. duration: of the motion [s].
+  [[nodiscard]] Spline<N> spline(double duration) const {
+    std::vector<double> times(q.size());
+    for (std::size_t i = 0; i < q.size(); ++i) times[i] = place(i) * duration;
+    constexpr double kRest = 1e-6;  // [rad] or [m] in the duration: round-off errors and decaying errors of the tip.
+    const typename Spline<N>::Rates rest = Spline<N>::Rates::Zero(2, end.cols());
+    return Spline<N>(q, times, rest, duration * end.row(0).cwiseAbs().maxCoeff() < kRest ? rest : end);
+  }
+
+  /// The positions of a motion with a clock at as many equal steps of the path's own time. duration: of the path [s].
+  [[nodiscard]] JointNodes at_places(const FastestClock& clock, double duration) const {
+    const Spline<N> motion = spline(clock.duration());
+    JointNodes places{q, end};
+    for (std::size_t i = 0; i < q.size(); ++i) places.q[i] = motion.at(clock.time_at(place(i) * duration)).x;
+    const Phase<double> last = clock.at(clock.duration());
+    places.end.row(0) /= last.sd;
+    places.end.row(1) = (end.row(1) - places.end.row(0) * last.sdd) / (last.sd * last.sd);
+    return places;
+  }
+
+ private:
+  /// Position i as a fraction of all steps.
+  [[nodiscard]] double place(std::size_t i) const noexcept {
+    return static_cast<double>(i) / static_cast<double>(q.size() - 1);
+  }
+};
+
 /// The joint positions of a motion without limits along a path of a duration [s], as a spline.
-/// nodes(intervals, q) executes the motion with this number of equal steps, adds the positions to q, and returns the
-/// result. The number of intervals is doubled until the motion follows the path, and the positions in the middle of the
-/// intervals are within kAccuracy of the spline.
-template <int N, typename Nodes>
-[[nodiscard]] JointPath<N> joint_path(double duration, const Nodes& nodes) {
-  constexpr double kAccuracy = 1e-8;  // [rad] or [m]; the tip is then within 1e-8 m of most paths.
+/// run(intervals, nodes) executes the motion with this number of equal steps, sets the nodes, and returns the result.
+/// The number of intervals is doubled until the motion follows the path, and the positions in the middle of the
+/// intervals are within the accuracy of the spline. with_clock: whether the motion has the clock of a plan.
+template <int N, typename Run>
+[[nodiscard]] JointPath<N> joint_path(double duration, bool with_clock, const Run& run) {
+  // Accuracy [rad] or [m]. With 1e-8, the tip is within 1e-8 m of most paths. A clock has discontinuous jerks: a motion
+  // with a clock needs many more intervals for less than 1e-4.
+  const double accuracy = with_clock ? 1e-4 : 1e-8;
   constexpr int kLeast = 600;
   constexpr int kMost = 9600;
   JointPath<N> path{};
   for (int intervals = kLeast; intervals <= kMost; intervals *= 2) {
-    std::vector<Vector<N>> q;
-    path.result = nodes(intervals, q);
+    JointNodes<N> nodes;
+    path.result = run(intervals, nodes);
     if (failed(path.result.status)) continue;  // Maybe the steps are too long.
-    std::vector<double> p(q.size());
-    for (std::size_t i = 0; i < p.size(); ++i) p[i] = static_cast<double>(i) * duration / intervals;
     double deviation = path.joints ? 0.0 : std::numeric_limits<double>::infinity();
-    for (std::size_t i = 1; path.joints && i < p.size(); i += 2) {
-      deviation = std::max(deviation, (path.joints->at(p[i]).x - q[i]).cwiseAbs().maxCoeff());
+    for (std::size_t i = 1; path.joints && i < nodes.q.size(); i += 2) {
+      const double p = static_cast<double>(i) * duration / intervals;
+      deviation = std::max(deviation, (path.joints->at(p).x - nodes.q[i]).cwiseAbs().maxCoeff());
     }
-    if (deviation < kAccuracy) break;
-    path.joints = Spline<N>(q, p);
+    if (deviation < accuracy) break;
+    path.joints = nodes.spline(duration);
   }
   return path;
 }
 
-/// joint_path() of a scheme at velocity level. duration: of the parameter of the result [s].
+/// joint_path() of the motion of a scheme from rest. plan: if given, with the clock of this plan.
 template <typename Arm, typename Path, typename Scheme>
 [[nodiscard]] JointPath<Arm::kDof> joint_path_of(const Arm& arm, const Path& path, const Scheme& scheme,
-                                                 const Vector<Arm::kDof>& q0, double duration) {
-  static_assert(Scheme::kLevel == Level::kVelocity, "a motion in the least time needs a scheme at velocity level");
-  return joint_path<Arm::kDof>(duration, [&](int intervals, std::vector<Vector<Arm::kDof>>& q) {
-    const TimeGrid<double> nodes(path.duration(), path.duration() / intervals);
+                                                 const Vector<Arm::kDof>& q0,
+                                                 const std::shared_ptr<const PlannedMotion>& plan = nullptr) {
+  using JointVector = Vector<Arm::kDof>;
+  const TimedPath<Path> timed(path, plan);
+  const auto run = [&](int intervals, JointNodes<Arm::kDof>& nodes) {
     const auto add = [&](const auto& sample) {
-      q.push_back(sample.q);
+      nodes.q.push_back(sample.q);
+      nodes.end.resize(2, q0.size());
+      nodes.end << sample.qd.transpose(), sample.qdd.transpose();
       return true;
     };
-    return rollout(arm, path, scheme, State<Arm::kDof>{q0, filled<Vector<Arm::kDof>>(q0.size())}, nodes, add);
-  });
+    const TimeGrid<double> grid(timed.duration(), timed.duration() / intervals);
+    const auto result = rollout(arm, timed, scheme, State<Arm::kDof>{q0, filled<JointVector>(q0.size())}, grid, add);
+    if (plan && !failed(result.status)) nodes = nodes.at_places(plan->clock, path.duration());
+    return result;
+  };
+  return joint_path<Arm::kDof>(path.duration(), plan != nullptr, run);
 }
 
 /// Throws std::invalid_argument if the arm cannot follow a path of a duration [s].

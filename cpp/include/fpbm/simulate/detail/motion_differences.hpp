@@ -11,16 +11,18 @@
 
 namespace fpbm {
 
-/// Calls f(velocity, acceleration, jerk) with the differences of the positions of a motion at every dt [s], from rest
-/// to rest.
+/// Calls f(velocity, acceleration, jerk) with the differences of the positions of a motion at every dt [s], from rest.
+/// After the end, the joints keep their velocity.
 template <int N, typename F>
 void each_difference(const Spline<N>& joints, const FastestClock& clock, double dt, F&& f) {
   Vector<N> q = joints.at(clock.at(0.0).s).x;
   Vector<N> velocity = filled<Vector<N>>(q.size());
   Vector<N> acceleration = velocity;
   const auto ticks = static_cast<int>(std::lround(clock.duration() / dt));
+  const auto end = clock.at(clock.duration());
+  const Vector<N> after = joints.at(end.s).xd * end.sd;
   for (int k = 1; k <= ticks + 2; ++k) {
-    const Vector<N> next = joints.at(clock.at(k * dt).s).x;
+    const Vector<N> next = joints.at(clock.at(k * dt).s).x + std::max(k - ticks, 0) * dt * after;
     const Vector<N> v = (next - q) / dt;
     const Vector<N> a = (v - velocity) / dt;
     f(v, a, Vector<N>((a - acceleration) / dt));
