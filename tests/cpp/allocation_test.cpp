@@ -199,22 +199,21 @@ TEST(NoAllocation, in_a_control_loop) {
   expect_none_in_a_loop<Pose>(fixed, fpbm, Bounds(clearance));
 }
 
-/// In both lanes, the limits are active, so that each tracker completes its ticks separately.
-TEST(NoAllocation, on_a_kept_path) {
+template <typename Scheme>
+void expect_none_on_a_kept_path(const Scheme& scheme) {
   const SerialArm<7> arm(presets::panda());
   const Vector<7> q0{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785};
   Bounds bounds(Clearance<7>(presets::panda(), presets::capsules::panda(), {}, 0.005));
-  const auto scheme = MVN<7>(5.0);
   const WithRotation path(InPlane(Path(Circle(0.1), 0.5, Quintic{}), {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}));
-  const auto kept = kept_path(arm, path, scheme, q0, arm.limits(), bounds, FastestOptions{});
   TrackerOptions<> options;
   options.keep_first_level = true;
-  const Limits<Level::kVelocity, 7> limits(arm.limits(), options.dt);
+  const Limits<Scheme::kLevel, 7> limits(arm.limits(), options.dt);
   const Vector<7> rest = Vector<7>::Zero();
   Tracker tracker(arm, Pose{}, scheme, State<7>{q0, rest}, options, limits, rest, bounds);
+  const auto kept = kept_path(arm, path, tracker.scheme(), q0, arm.limits(), bounds, FastestOptions{});
   PathFollower follower(kept, tracker.tip(), 0.1);
   const AllocationWatch watch;
-  for (int i = 0; i < 4000 && !follower.done(); ++i) {
+  for (int i = 0; i < 5000 && !follower.done(); ++i) {
     if (i == 300) follower.pause();
     if (i == 800) follower.resume();
     if (i == 1000) tracker.stop();
@@ -226,6 +225,12 @@ TEST(NoAllocation, on_a_kept_path) {
   EXPECT_TRUE(follower.done());
 }
 
+TEST(NoAllocation, on_a_kept_path) {
+  expect_none_on_a_kept_path(MVN<7>(5.0));
+  expect_none_on_a_kept_path(FPBM<7>(0.6, UnitWeights{}, 20.0, 100.0));
+}
+
+/// In both lanes, the limits are active, so that each tracker completes its ticks separately.
 TEST(NoAllocation, in_trackers_side_by_side) {
   using In = Lanes<2>;
   constexpr double kTick = 4e-3;
