@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fpbm/core/detail/mask.hpp"
+#include "fpbm/core/detail/unrolled.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/linalg/detail/total.hpp"
 
@@ -54,13 +55,16 @@ template <typename Plain>
 }
 
 /// Whether all entries are finite. Always true with lanes, where a failed lane does not disturb the other lanes.
-template <typename Derived>
-[[nodiscard]] bool is_finite([[maybe_unused]] const Eigen::MatrixBase<Derived>& values) noexcept {
-  if constexpr (kInLanes<typename Derived::Scalar>) {
+template <typename Plain>
+[[nodiscard]] bool is_finite([[maybe_unused]] const Eigen::PlainObjectBase<Plain>& values) noexcept {
+  using Scalar = typename Plain::Scalar;
+  if constexpr (kInLanes<Scalar>) {
     return true;
   } else {
-    using Scalar = typename Derived::Scalar;
-    return (values * Scalar(0)).sum() == Scalar(0);  // Inf and NaN make the sum NaN.
+    Scalar product(0);  // Inf and NaN make the product NaN.
+    each(Constant<0>{}, extent<Plain::SizeAtCompileTime>(values.size()),
+         [&](Eigen::Index i) { product *= values.coeff(i); });
+    return product == Scalar(0);
   }
 }
 
