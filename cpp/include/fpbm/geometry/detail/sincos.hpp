@@ -9,6 +9,7 @@
 #include "fpbm/core/detail/mask.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/geometry/detail/float_sincos.hpp"
+#include "fpbm/linalg/detail/column_sums.hpp"
 
 namespace fpbm {
 
@@ -168,7 +169,8 @@ void sincos(const Vector<N, Scalar>& angles, Vector<N, Scalar>& sines, Vector<N,
   sines.resize(n);
   cosines.resize(n);
   if constexpr (std::is_same_v<Scalar, double>) {
-    if (angles.cwiseAbs().maxCoeff() <= ReducedSinCos::kReach) {
+    // Larger angles are tested one by one. The result for |angle| ≤ kReach is the same.
+    if (squared_length(angles.data(), n) <= ReducedSinCos::kReach * ReducedSinCos::kReach) {
       for (Eigen::Index i = 0; i < n; ++i) ReducedSinCos::evaluate(angles(i), sines(i), cosines(i));
       return;
     }
