@@ -50,7 +50,7 @@ void set_null_basis(const Matrix<M, N, Scalar>& J, const Vector<N, Scalar>& unit
   Z.resize(rows, J.cols() - space.rank());
   Vector<N, Scalar> column = unit;
   for (Eigen::Index j = 0; j < Z.cols(); ++j) {
-    space.column(space.rank() + j, column);
+    space.column(space.rank() + j, column.data());
     for (Eigen::Index i = 0; i < J.cols(); ++i) Z.coeffRef(i, j) = column.coeff(i);
   }
 }

@@ -54,18 +54,16 @@ class RowSpace {
       const Scalar head = V_.coeff(k, k);
       V_.coeffRef(k, k) += head < Scalar(0) ? -sqrt(square) : sqrt(square);
       beta_.coeffRef(k) = Scalar(1) / (square + sqrt(square) * (head < Scalar(0) ? -head : head));
-      each(next(k), m, [&](auto j) { reflect(k, V_.col(j)); });
+      each(next(k), m, [&](auto j) { reflect(k, V_.data() + j * n); });
       rank_ = k + 1;
     });
   }
 
   [[nodiscard]] Eigen::Index rank() const noexcept { return rank_; }
 
-  /// Column j of Q.
-  template <typename Column>
-  void column(Eigen::Index j, Column&& out) const noexcept {
-    for (Eigen::Index i = 0; i < V_.rows(); ++i) out(i) = Scalar(0);
-    out(j) = Scalar(1);
+  /// Sets the entries from `out` on to column j of Q.
+  void column(Eigen::Index j, Scalar* out) const noexcept {
+    for (Eigen::Index i = 0; i < V_.rows(); ++i) out[i] = Scalar(i == j ? 1 : 0);
     Eigen::Index count = rank_;  // The last reflections do not change e_j if entry j of their v is zero.
     while (count > 0 && V_.coeff(j, count - 1) == Scalar(0)) --count;
     const auto m = extent<kM>(V_.cols());
@@ -90,18 +88,18 @@ class RowSpace {
       Scalar(1024) * std::numeric_limits<Scalar>::epsilon() * std::numeric_limits<Scalar>::epsilon();
 
   /// x becomes H_k x, where H_k = I − β_k v vᵀ is the k-th reflection.
-  template <typename Index, typename Column>
-  void reflect(Index k, Column&& x) const noexcept {
+  template <typename Index>
+  void reflect(Index k, Scalar* x) const noexcept {
     const auto n = extent<kN>(V_.rows());
     if constexpr (kUnrolls) {
       Scalar along = Scalar(0);
-      each(k, n, [&](Eigen::Index i) { along += V_.coeff(i, k) * x.coeff(i); });
+      each(k, n, [&](Eigen::Index i) { along += V_.coeff(i, k) * x[i]; });
       along *= beta_.coeff(k);
-      each(k, n, [&](Eigen::Index i) { x.coeffRef(i) -= along * V_.coeff(i, k); });
+      each(k, n, [&](Eigen::Index i) { x[i] -= along * V_.coeff(i, k); });
     } else {
       const Scalar* const v = V_.data() + k * n + k;
-      const Scalar along = beta_.coeff(k) * column_dot<Scalar>(v, x.data() + k, n - k);
-      subtract_multiple<Scalar>(x.data() + k, along, v, n - k);
+      const Scalar along = beta_.coeff(k) * column_dot<Scalar>(v, x + k, n - k);
+      subtract_multiple<Scalar>(x + k, along, v, n - k);
     }
   }
 
@@ -117,7 +115,7 @@ template <int M, int N, typename Scalar>
 [[nodiscard]] Matrix<N, kNullity<M, N>, Scalar> null_basis(const Matrix<M, N, Scalar>& A) noexcept {
   const RowSpace<M, N, Scalar> rows(A);
   Matrix<N, kNullity<M, N>, Scalar> Z(A.cols(), A.cols() - A.rows());
-  for (Eigen::Index j = 0; j < Z.cols(); ++j) rows.column(A.rows() + j, Z.col(j));
+  for (Eigen::Index j = 0; j < Z.cols(); ++j) rows.column(A.rows() + j, Z.data() + j * Z.rows());
   return Z;
 }
 
