@@ -13,9 +13,11 @@ template <Level kLevel, int N, typename Scalar>
   validation::require_fraction("reserve", reserve);
   if (!(reserve > Scalar(0))) return limits;
   JointLimits<N, Scalar> bounds = limits.bounds();
-  bounds.velocity *= Scalar(1) - reserve / Scalar(2);
-  bounds.acceleration *= Scalar(1) - reserve;
-  bounds.deceleration *= Scalar(1) - reserve;
+  for (Eigen::Index i = 0; i < bounds.velocity.size(); ++i) {
+    bounds.velocity(i) *= Scalar(1) - reserve / Scalar(2);
+    bounds.acceleration(i) *= Scalar(1) - reserve;
+    bounds.deceleration(i) *= Scalar(1) - reserve;
+  }
   return Limits<kLevel, N, Scalar>(bounds, limits.tick());
 }
 

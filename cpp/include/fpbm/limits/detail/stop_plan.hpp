@@ -27,7 +27,7 @@ struct StopDisplacement {
 
   /// Displacement of n joints at rest.
   [[nodiscard]] static StopDisplacement none(Eigen::Index n) {
-    const Vector<N, Scalar> zero = Vector<N, Scalar>::Zero(n);
+    const auto zero = filled<Vector<N, Scalar>>(n);
     return {zero, zero, zero, zero, zero};
   }
 };
@@ -46,7 +46,7 @@ class StopPlan {
   using MotionLimits = Limits<kLevel, N, Scalar>;
 
   /// Plan of an arm at rest.
-  explicit StopPlan(Eigen::Index dof) : last_(JointVector::Zero(dof)), velocity_(JointVector::Zero(dof)) {}
+  explicit StopPlan(Eigen::Index dof) : last_(filled<JointVector>(dof)), velocity_(last_) {}
 
   /// Plan from a viable state after a tick with the acceleration `last`.
   StopPlan(const MotionLimits& limits, const State<N, Scalar>& state, const JointVector& last) noexcept
@@ -56,8 +56,8 @@ class StopPlan {
     for (Eigen::Index i = 0; i < last.size(); ++i) {
       if (limits.bounds_jerk(i)) ramp_ticks_ = std::max(ramp_ticks_, ticks_for(std::abs(last(i)), h * bounds.jerk(i)));
     }
-    velocity_ += h * ramp_velocity_change() * last;
     for (Eigen::Index i = 0; i < last.size(); ++i) {
+      velocity_(i) += h * ramp_velocity_change() * last(i);
       profile_ =
           profile_.together(StopProfile<Scalar>::quickest(velocity_(i), bounds.acceleration(i), bounds.jerk(i), h));
     }
