@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "fpbm/core/detail/unrolled.hpp"
 #include "fpbm/core/status.hpp"
@@ -150,9 +151,9 @@ class DampedGram {
   }
 
   [[nodiscard, gnu::noinline]] Status damped(Scalar threshold, Scalar bound, Status undamped) noexcept {
-    const LostDirections<M, Scalar> lost(gram_of(J_), J_, threshold);
+    LostDirections<M, Scalar> lost(gram_of(J_), J_, threshold);
     lost_ = lost.count;
-    delta_ = lost.delta;
+    delta_ = std::move(lost.delta);
     threshold_ = threshold;
     const Scalar round_off = kUnknown / damping_.radius();
     const bool known = Value(Scalar(1)) > Value(round_off * round_off * bound) * factor_.inverse_trace();
