@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from near_singular import POINTS, STARTS, limits_of
 
 import fpbm_cpp as fp
 
@@ -52,6 +53,24 @@ def test_random_paths_are_kept_within_all_bounds(name):
         if kept == 3:
             return
     pytest.fail("too few paths could be followed")
+
+
+def test_a_path_past_a_singular_posture_is_kept():
+    """With a joint path of 9,600 intervals, the tip leaves this path by 2.0e-6."""
+    arm = fp.SerialArm.preset("gen3")
+    path = fp.Waypoints(POINTS["gen3"], duration=1)
+    assert_kept(fp.fastest(arm, path, MVN, STARTS["gen3"], task="pose", limits=limits_of(arm, "gen3")))
+
+
+def test_a_path_that_the_joint_path_does_not_resolve_is_rejected():
+    """The motion of a joint path of 9,600 intervals left this path by 1.3e-5, and a tracker by 1.4 mm."""
+    arm = fp.SerialArm.preset("xarm7")
+    path = fp.Waypoints(POINTS["xarm7"], duration=1)
+    with pytest.raises(fp.ParameterError, match=r"followed to the fraction 0\.169\d* only"):
+        fp.fastest(arm, path, MVN, STARTS["xarm7"], task="pose", limits=limits_of(arm, "xarm7"))
+    tracker = fp.Tracker(arm, fp.MVN(k=5), STARTS["xarm7"], task="pose", limits=limits_of(arm, "xarm7"))
+    with pytest.raises(fp.ParameterError, match=r"followed to the fraction 0\.169\d* only"):
+        tracker.follow(path, keep_path=True)
 
 
 def test_the_circle_that_a_tracker_leaves_is_kept():
