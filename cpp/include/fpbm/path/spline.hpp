@@ -9,7 +9,7 @@
 
 namespace fpbm {
 
-/// Quintic spline through points at given times, at rest (velocity and acceleration zero) at both ends, with four
+/// Quintic spline through points at given times, with given velocities and accelerations at both ends, and four
 /// continuous derivatives: of all curves through the points, the curve with the least ∫|jerk|² dt.
 ///
 /// Allocates at construction and when copied, never in at().
@@ -17,6 +17,7 @@ template <int M, typename Scalar = double>
 class Spline {
  public:
   using Point = Vector<M, Scalar>;
+  using Rates = Matrix<2, M, Scalar>;  ///< Velocity and acceleration.
 
   /// Value and the first two derivatives with respect to time.
   struct Sample {
@@ -25,12 +26,18 @@ class Spline {
     Point xdd;
   };
 
-  /// At least two points, at strictly increasing times [s].
-  Spline(const std::vector<Point>& points, const std::vector<Scalar>& times) : times_(times) {
-    const Point rest = filled<Point>(points[0].size());
+  /// At least two points, at strictly increasing times [s], at rest at both ends.
+  Spline(const std::vector<Point>& points, const std::vector<Scalar>& times)
+      : Spline(points, times, Rates::Zero(2, points[0].size()), Rates::Zero(2, points[0].size())) {}
+
+  /// start, end: velocity and acceleration at the first and the last point.
+  Spline(const std::vector<Point>& points, const std::vector<Scalar>& times, const Rates& start, const Rates& end)
+      : times_(times) {
     knots_.reserve(points.size());
-    for (const Point& point : points) knots_.push_back({point, rest, rest});
-    solve();
+    for (const Point& point : points) knots_.push_back({point, start.row(0), start.row(1)});
+    knots_.back().xd = end.row(0);
+    knots_.back().xdd = end.row(1);
+    solve(start, end);
   }
 
   [[nodiscard]] const std::vector<Scalar>& times() const noexcept { return times_; }
@@ -86,12 +93,11 @@ class Spline {
   }
 
   using Block = Matrix<2, 2, Scalar>;
-  using Rates = Matrix<2, M, Scalar>;  // Velocity and acceleration of a knot.
 
   /// Computes the velocities and accelerations of the inner knots that make jerk and snap continuous. The continuity
   /// conditions are the normal equations of the least ∫|jerk|² dt: a block tridiagonal system, which is positive
   /// definite and therefore needs no pivoting.
-  void solve() {
+  void solve(const Rates& start, const Rates& end) {
     const std::size_t inner = knots_.size() - 2;
     std::vector<Block> upper(inner);
     std::vector<Rates> rates(inner);
@@ -104,11 +110,10 @@ class Spline {
       Rates right(2, before.size());
       right.row(0) = 360 * (before / h + after / g).transpose();
       right.row(1) = 60 * (after - before).transpose();
-      if (i > 0) {
-        const Block lower = across(h).transpose();
-        diagonal -= lower * upper[i - 1];
-        right -= lower * rates[i - 1];
-      }
+      const Block lower = across(h).transpose();
+      if (i > 0) diagonal -= lower * upper[i - 1];
+      right -= lower * (i > 0 ? rates[i - 1] : start);
+      if (i + 1 == inner) right -= across(g) * end;
       const Block inverse = inverted(diagonal);
       upper[i] = inverse * across(g);
       rates[i] = inverse * right;
