@@ -42,16 +42,11 @@ template <int N, typename Path>
       p.push_back(static_cast<double>(i) * h);
       q.push_back(joints.at(path.time(p.back())).x);
     }
-    using Rates = typename Spline<N>::Rates;
-    Rates start = Rates::Zero(2, q[0].size());
-    Rates end = start;
-    if (path.moves(0))
-      start = rates_by_differences<N>(
-          [&](std::size_t i) -> const auto& { return q[i]; }, h);
-    if (path.moves(1))
-      end = rates_by_differences<N>(
-          [&](std::size_t i) -> const auto& { return q[intervals - i]; }, -h);
-    Spline<N> spline(q, p, start, end);
+    const auto from_start = [&q](std::size_t i) -> const Vector<N>& { return q[i]; };
+    const auto from_end = [&q](std::size_t i) -> const Vector<N>& { return q[q.size() - 1 - i]; };
+    const typename Spline<N>::Rates rest = Spline<N>::Rates::Zero(2, q[0].size());
+    Spline<N> spline(q, p, path.moves(0) ? rates_by_differences<N>(from_start, h) : rest,
+                     path.moves(1) ? rates_by_differences<N>(from_end, -h) : rest);
     double deviation = 0.0;
     for (const double each : p) {
       const double middle = std::min(each + h / 2.0, path.duration());
