@@ -1,6 +1,7 @@
 #include <pybind11/typing.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <memory>
@@ -164,27 +165,39 @@ Outcomes rollout(const Model& arm, const Path& path, const Scheme& scheme, const
   });
 }
 
-/// A motion along a path in the least time. If the arm cannot follow the path, the time is the fraction of the path
-/// that can be followed, and there are no samples; q is the last posture.
+/// A motion along a path in the least time. end_speeds: speeds of the tip at the start and at the end [m/s]. If the arm
+/// cannot follow the path, the time is the fraction of the path that can be followed, and there are no samples; q is
+/// the last posture.
 Outcomes fastest(const Model& arm, const Path& path, const Scheme& scheme, const ArrayLike& q0, double dt,
                  const std::string& task, const py::object& limits, double tip_speed, double tip_acceleration,
-                 const py::object& bounds, const py::object& stack_tasks) {
+                 const py::object& bounds, const py::object& stack_tasks, const ClockEnds& end_speeds) {
+  const FastestOptions options{dt, tip_speed, tip_acceleration, 0.0, end_speeds[0], end_speeds[1]};
+  const std::array<bool, 2> moving = moves_at_ends(options);
   validation::require_positive("dt", dt);
   if (!(tip_speed > 0.0)) validation::fail("tip_speed", tip_speed, "positive");
   if (!(tip_acceleration > 0.0)) validation::fail("tip_acceleration", tip_acceleration, "positive");
   AnyBounds kept = bounds_of(arm, bounds);
   const State<kDynamic> start{joint_vector(q0, "q0", arm.dof()), JointVector::Zero(arm.dof())};
-  const std::optional<StackOptions> stack = stack_options_of(stack_tasks, arm, path);
+  std::optional<StackOptions> stack = stack_options_of(stack_tasks, arm, path);
   const double duration = stack ? stack->duration : path.duration();
   return visit_space(arm, task, stack.has_value(), [&](const auto* any, auto space) -> Outcomes {
     using Space = decltype(space);
-    const AnyPath<Space> same = path.as<Space>();
+    AnyPath<Space> same = path.as<Space>();
     Motion<Space> motion{any, same, scheme, start, TimeGrid<double>(duration, duration), stack ? &*stack : nullptr};
-    const JointPath<kDynamic> along = motion.joint_path(duration);
+    JointPath<kDynamic> along = motion.joint_path(duration);
     if (!along.joints) {
       Arrays last;
       last["q"] = array_of(along.result.last.q);
       return py::make_tuple(along.result.status, along.result.time / duration, 0, last);
+    }
+    if (moving[0] || moving[1]) {
+      const MovingEnds ends(same, moving);
+      along.joints = moving_joints(*along.joints, ends);
+      same = AnyPath<Space>(ends);
+      if (stack) {
+        std::visit([&](auto& own) { own = std::decay_t<decltype(own)>(MovingEnds(own, moving)); },
+                   stack->paths.front().path);
+      }
     }
     for (const double p : along.joints->times()) {
       try {
@@ -193,8 +206,7 @@ Outcomes fastest(const Model& arm, const Path& path, const Scheme& scheme, const
         validation::reject("path", " at the fraction ", p / duration, ": ", error.what());
       }
     }
-    const auto clock =
-        motion.clock(*along.joints, limits_of(arm, limits), kept, {dt, tip_speed, tip_acceleration, 0.0});
+    const auto clock = motion.clock(*along.joints, limits_of(arm, limits), kept, options);
     motion.grid = TimeGrid<double>(clock.duration(), dt);
     const MotionArrays<Space> arrays(motion.grid.samples(), arm.dof(), nullptr, motion.stack);
     motion.play(*along.joints, clock, arrays.output);
@@ -321,7 +333,7 @@ void bind_sim(py::module_& m) {
         py::arg("kept") = std::pair(kUnbounded, 0.0));
   m.def("fastest", &fastest, py::arg("arm"), py::arg("path"), py::arg("scheme"), py::arg("q0"), py::arg("dt"),
         py::arg("task"), py::arg("limits"), py::arg("tip_speed"), py::arg("tip_acceleration"), py::arg("bounds"),
-        py::arg("stack_tasks") = none);
+        py::arg("stack_tasks") = none, py::arg("end_speeds") = ClockEnds{});
   m.def("processor_kinds", &processor_kinds);
   m.def("use_lanes", &use_lanes, py::arg("code"));
   m.def("check_sweep", &check_sweep, py::arg("arm"), py::arg("path"), py::arg("schemes"), py::arg("q0s"), py::arg("dt"),

@@ -1116,6 +1116,9 @@ def fastest(
     tip_acceleration: typing.SupportsFloat | typing.SupportsIndex,
     bounds: typing.Any,
     stack_tasks: typing.Any = None,
+    end_speeds: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(2)"
+    ] = [0.0, 0.0],
 ) -> tuple[Status, float, int, dict[str, numpy.ndarray]]: ...
 def in_plane(path: Path, axes: numpy.typing.ArrayLike) -> Path: ...
 def line(

@@ -82,6 +82,9 @@ def test_fastest_selects_a_scheme_at_velocity_level():
     assert "must be at velocity level" in error_of("fastest", "panda", "--scheme", "man")
     assert "can be followed to the fraction" in error_of("fastest", "panda", "--radius", "0.6")
     assert "tip_speed = -2" in error_of("fastest", "panda", "--tip-speed", "-2")
+    assert "start_speed = -2" in error_of("fastest", "panda", "--start-speed", "-2")
+    assert "end_speed = 9: must be at most" in error_of("fastest", "panda", "--end-speed", "9")
+    assert "panda, circle, mvn" in call("fastest", "panda", "--start-speed", "0.2", "--end-speed", "0.1").output
     assert "--also needs --out" in call("fastest", "panda", "--also", "csv").output
 
 

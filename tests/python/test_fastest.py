@@ -222,3 +222,76 @@ def test_what_has_no_answer_is_refused_with_the_place():
     refused("leaves the range of joint 3", CIRCLE, MVN, limits=narrow)
     open_ended = replace(PANDA.limits, acceleration=np.inf, jerk=None)
     refused("limits.acceleration", CIRCLE, MVN, limits=open_ended)
+
+
+def tip_speeds(run: fp.Run) -> list[float]:
+    """Speeds of the tip at the start and at the end."""
+    return [float(np.linalg.norm((np.asarray(run.arm.jacobian(run.q[k])) @ run.qd[k])[:3])) for k in (0, -1)]
+
+
+@pytest.mark.parametrize("speeds", [(0.2, 0.0), (0.0, 0.3), (0.1, 0.4)])
+@pytest.mark.parametrize(
+    "path", [CIRCLE, fp.Polyline([[0, 0, 0], [0, 0.2, 0], [0, 0.2, 0.2]], blend=0.05), fp.Line((0, 0.2, 0.1))]
+)
+def test_the_tip_has_the_given_speeds_at_the_ends(path, speeds):
+    run = fp.fastest(PANDA, path, MVN, BENT, task="pose", start_speed=speeds[0], end_speed=speeds[1])
+    np.testing.assert_allclose(tip_speeds(run), speeds, atol=1e-6)
+    assert np.abs(run.error).max() < 1e-6
+    for order, bound in enumerate((run.limits.velocity, run.limits.acceleration, run.limits.jerk), 1):
+        assert np.max(np.abs(np.diff(run.q, order, axis=0)) / 1e-3**order / bound) <= 1 + 1e-9
+    assert run.t[-1] < fp.fastest(PANDA, path, MVN, BENT, task="pose").t[-1]
+    assert run.replay() == run
+
+
+def test_a_path_can_be_passed_at_a_constant_speed():
+    run = fp.fastest(PANDA, CIRCLE, MVN, BENT, task="pose", tip_speed=0.25, start_speed=0.25, end_speed=0.25)
+    speeds = np.linalg.norm(np.diff(run.positions, axis=0), axis=1) / 1e-3
+    np.testing.assert_allclose(speeds, 0.25, rtol=2e-3)
+    assert speeds.max() <= 0.25 + 1e-9
+
+
+def test_a_sequence_stops_between_its_paths_and_moves_at_its_ends():
+    path = fp.Line((0.1, 0, 0), 1.0).then(fp.Line((0, 0.1, 0), 1.0))
+    run = fp.fastest(PANDA, path, MVN, BENT, start_speed=0.2, end_speed=0.1)
+    np.testing.assert_allclose(tip_speeds(run), (0.2, 0.1), atol=1e-6)
+    corner = np.argmin(np.linalg.norm(run.x - (run.x[0] + [0.1, 0, 0]), axis=1))
+    assert np.abs(run.qd[corner - 1 : corner + 2]).max() < 0.05
+    assert np.abs(run.error).max() < 1e-6
+
+
+def test_speeds_at_the_ends_belong_to_the_task_of_a_stack():
+    stack = fp.Stack([fp.PoseTask(name="tip")])
+    run = fp.fastest(PANDA, {"tip": CIRCLE}, MVN, BENT, stack=stack, start_speed=0.2, end_speed=0.1)
+    np.testing.assert_allclose(tip_speeds(run), (0.2, 0.1), atol=1e-6)
+    assert max(np.abs(each).max() for each in run.errors.values()) < 1e-6
+    moving = fp.Stack([fp.PoseTask(name="tip")], [fp.PostureTask(BENT + 0.1)])
+    with pytest.raises(fp.ParameterError, match="near a singular posture or in the null space"):
+        fp.fastest(PANDA, {"tip": CIRCLE}, MVN, BENT, stack=moving, start_speed=0.2)
+    robot = fp.Robot.preset("two_pandas")
+    both = fp.Stack([fp.PoseTask("left_tip", name="left"), fp.PoseTask("right_tip", name="right")])
+    paths = {"left": CIRCLE, "right": fp.Line((0.0, 0.05, 0.1), 1.0)}
+    with pytest.raises(fp.ParameterError, match=r"start_speed.*must be zero for paths of several tasks"):
+        fp.fastest(robot, paths, MVN, np.concatenate([BENT, BENT]), stack=both, end_speed=0.1)
+
+
+def test_speeds_at_the_ends_that_have_no_answer_are_refused():
+    def refused(text: str, path: fp.Path = CIRCLE, **options: float):
+        with pytest.raises(fp.ParameterError, match=text):
+            fp.fastest(PANDA, path, MVN, BENT, task="pose", **options)
+
+    refused("start_speed = -1: must be finite and not negative", start_speed=-1)
+    refused("end_speed = inf: must be finite and not negative", end_speed=np.inf)
+    refused("start_speed = nan", start_speed=np.nan)
+    refused("end_speed = 1e-06: must be 0, or at least 1e-05", end_speed=1e-6)
+    refused(r"start_speed = 4: must be at most 0\.\d+, by the bounds on velocities", start_speed=4)
+    refused(r"end_speed = 0\.3: must be at most 0\.2", end_speed=0.3, tip_speed=0.2)
+    short = fp.Line((0, 0.01, 0))
+    refused(r"start_speed = 0\.6: must be lower, for example 0\.\d+", short, start_speed=0.6)
+    refused(r"start_speed = 0\.01 and end_speed = 0\.7: .* for example", short, start_speed=0.01, end_speed=0.7)
+    corner = fp.Waypoints([[0, 0, 0], [0, 0.1, 0], [0, 0.1, 0.1]])
+    refused("no bounded curvature at its end", corner, end_speed=0.1)
+    refused("no bounded curvature at its start", fp.Tricuspid(0.05).in_plane("yz"), start_speed=0.1)
+    turn = fp.Line((0, 0, 0), 1.0).with_rotation([0, 0, 0.5])
+    refused("has no length: must move the tip in position", turn, start_speed=0.1)
+    with pytest.raises(TypeError):
+        fp.fastest(PANDA, CIRCLE, MVN, BENT, start_speed=None)

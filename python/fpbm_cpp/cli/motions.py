@@ -76,6 +76,8 @@ def track(request: Request, out: Path | None, dark: bool, also: tuple[str, ...])
 )
 @click.option("--tip-speed", type=float, metavar="NUMBER", help="Largest speed of the tip.  [m/s]")
 @click.option("--tip-acceleration", type=float, metavar="NUMBER", help="Largest acceleration of the tip.  [m/s^2]")
+@click.option("--start-speed", type=float, default=0.0, metavar="NUMBER", help="Speed of the tip at the start.  [m/s]")
+@click.option("--end-speed", type=float, default=0.0, metavar="NUMBER", help="Speed of the tip at the end.  [m/s]")
 @out_option
 @dark_option
 @also_option
@@ -83,6 +85,8 @@ def fastest(
     request: Request,
     tip_speed: float | None,
     tip_acceleration: float | None,
+    start_speed: float,
+    end_speed: float,
     out: Path | None,
     dark: bool,
     also: tuple[str, ...],
@@ -96,7 +100,9 @@ def fastest(
     _require_out(out, also)
     motion = request.motion(at_rest=True, limited=True, keep_path=True)
     with request.plain():
-        run = motion.fastest(tip_speed=tip_speed, tip_acceleration=tip_acceleration)
+        run = motion.fastest(
+            tip_speed=tip_speed, tip_acceleration=tip_acceleration, start_speed=start_speed, end_speed=end_speed
+        )
     _report(request, motion, run, out, dark, also)
 
 

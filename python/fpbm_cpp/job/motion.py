@@ -148,8 +148,8 @@ class Motion:
             del keywords["limits"]
             return simulate(self.arm, self.path, self.scheme, self.q0, partial=True, **keywords)
 
-    def fastest(self, **tip: float | None) -> Run:
-        """Run the motion by fastest(). tip: bounds tip_speed and tip_acceleration."""
+    def fastest(self, **tip: Any) -> Run:
+        """Run the motion by fastest(). tip: bounds on the tip, and its speeds at the ends."""
         options = self.options
         with job_errors():
             return fastest(

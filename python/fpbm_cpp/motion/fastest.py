@@ -39,12 +39,15 @@ def fastest(
     limits: JointLimits | None = None,
     tip_speed: float | None = None,
     tip_acceleration: float | None = None,
+    start_speed: float = 0.0,
+    end_speed: float = 0.0,
     bounds: Sequence[Bound] = (),
 ) -> Run:
     """Move an arm along a path in the least time within its limits; the tip stays on the path.
 
     The scheme gives the joint positions along the whole path. The clock of the path then minimises the duration within
-    the bounds on velocity, acceleration and jerk of all joints, from rest to rest (docs: Paths in the least time). The
+    the bounds on velocity, acceleration and jerk of all joints (docs: Paths in the least time). The motion begins and
+    ends at rest, or with the given speeds of the tip: the bounds then hold from the first sample to the last. The
     durations and time laws of shapes have no effect: only the geometry counts, and paths need no duration. The speed
     of a path at_speed() is a bound. Between the parts of a Sequence, the arm stops. run.saturated and
     run.bound_ratios() show which bounds limit the motion.
@@ -59,6 +62,9 @@ def fastest(
         Limits of the joints, by default the arm's; each joint needs a bound on its acceleration.
     tip_speed, tip_acceleration : float, optional
         Bounds on the tip; for a stack, on the frame of the task of x [m/s, m/s^2].
+    start_speed, end_speed : float
+        Speeds of the tip along the path at the start and at the end; for a stack, of the frame of the task of x [m/s].
+        Zero: at rest. Waypoints and cusps have no bounded curvature at their ends, and need zero.
     bounds : sequence of Clearance and TaskBounds, optional
         Bounds that the motion must keep. The scheme does not avoid them.
 
@@ -66,7 +72,8 @@ def fastest(
     ------
     ParameterError
         If an argument is out of range, or the scheme cannot follow the path within the ranges of the joints and within
-        the bounds. The message says at which fraction of the path.
+        the bounds. The message says at which fraction of the path. If the bounds do not admit a speed at an end, the
+        message has a lower speed.
     """
     require_motion(arm, path, scheme, timed=False)
     if scheme.level != "velocity":
@@ -80,11 +87,19 @@ def fastest(
         "limits": limits_of(arm, limits),
         "tip_speed": tip_speed,
         "tip_acceleration": tip_acceleration,
+        "start_speed": float(start_speed),
+        "end_speed": float(end_speed),
         "bounds": bounds_of(bounds),
         "stack": stack,
     }
     tip = speed if tip_speed is None else min(tip_speed, speed), inf if tip_acceleration is None else tip_acceleration
-    outcome = fastest_motion(arm, followed, scheme, q0, dt, kind, options["limits"], *tip, options["bounds"], tasks)
+    ends = [options["start_speed"], options["end_speed"]]
+    if tasks is not None and tasks.other_paths and any(ends):
+        many = f" and end_speed = {ends}: must be zero for paths of several tasks, which have several speeds"
+        raise wrong("start_speed", start_speed, many)
+    outcome = fastest_motion(
+        arm, followed, scheme, q0, dt, kind, options["limits"], *tip, options["bounds"], tasks, ends
+    )
     code, fraction, _, arrays = outcome
     if failed(code):
         where = np.array2string(arrays["q"], precision=4, separator=", ")

@@ -69,11 +69,16 @@ class ArcLength {
   [[nodiscard]] const Path& path() const noexcept { return lengths_.path(); }
   [[nodiscard]] const std::vector<Part>& parts() const noexcept { return parts_; }
 
+  /// Time of the path at a distance from the start of a part [s].
+  [[nodiscard]] Scalar time(const Part& part, Scalar distance) const noexcept {
+    return lengths_.time(part.cells, distance);
+  }
+
   /// Point of the path at a distance from the start of a part, and its first two derivatives with respect to the
   /// distance.
   [[nodiscard]] Curve<Space, Scalar> at(const Part& part, Scalar distance) const noexcept {
     constexpr int kLinear = Lengths::kLinear;
-    const Scalar t = lengths_.time(part.cells, distance);
+    const Scalar t = time(part, distance);
     Reference<Space, Scalar> here = path().sample(t);
     const auto point = here.x;
     if (const Scalar moving = std::clamp(t, part.first, part.last); moving != t) here = path().sample(moving);

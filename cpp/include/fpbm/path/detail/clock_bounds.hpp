@@ -56,6 +56,11 @@ class ClockBounds {
     return 1.0 / inverse;
   }
 
+  /// The largest y within the bounds on velocities.
+  [[nodiscard]] double largest_for_speeds() const noexcept { return 1.0 / speed_; }
+  /// Removes the bounds on velocities, where y is given.
+  void remove_speeds() noexcept { speed_ = 0.0; }
+
   /// Changes the unit of y: the new y is y divided by `unit`. At places where the path stands, y is at most kMostY.
   void scale(double unit) noexcept {
     constexpr double kMostY = 1e8;

@@ -7,39 +7,14 @@
 #include <limits>
 #include <vector>
 
+#include "fpbm/path/detail/banded_system.hpp"
 #include "fpbm/path/detail/clock_bounds.hpp"
+#include "fpbm/path/detail/clock_spline.hpp"
 
 namespace fpbm {
 
-/// The squared rate y(p) of a clock, as a quadratic B-spline with equal intervals of p: y′ is continuous, and y″ is
-/// constant in each interval. Therefore, the accelerations of a motion are continuous.
-class ClockSpline {
- public:
-  ClockSpline(std::size_t intervals, double width) : width_(width), coefficients_(intervals + 2, 0.0) {}
-
-  [[nodiscard]] std::size_t intervals() const noexcept { return coefficients_.size() - 2; }
-  [[nodiscard]] double width() const noexcept { return width_; }
-  [[nodiscard]] std::vector<double>& coefficients() noexcept { return coefficients_; }
-
-  /// Weights of the three coefficients of an interval in y, y′ and y″, at the fraction f of the interval.
-  [[nodiscard]] std::array<std::array<double, 3>, 3> weights(double f) const noexcept {
-    const double rest = 1.0 - f;
-    const double square = width_ * width_;
-    return {{{rest * rest / 2.0, 0.5 + f * rest, f * f / 2.0},
-             {-rest / width_, (rest - f) / width_, f / width_},
-             {1.0 / square, -2.0 / square, 1.0 / square}}};
-  }
-  [[nodiscard]] ClockState at(std::size_t interval, const std::array<std::array<double, 3>, 3>& w) const noexcept {
-    const double* c = &coefficients_[interval];
-    const auto sum = [c](const std::array<double, 3>& row) { return row[0] * c[0] + row[1] * c[1] + row[2] * c[2]; };
-    return {sum(w[0]), sum(w[1]), sum(w[2])};
-  }
-  [[nodiscard]] ClockState at(std::size_t interval, double f) const noexcept { return at(interval, weights(f)); }
-
- private:
-  double width_;
-  std::vector<double> coefficients_;
-};
+/// Numbers at the start and at the end of a clock.
+using ClockEnds = std::array<double, 2>;
 
 /// Clock with the least duration ∫ dp/√y within its bounds, by an interior-point method: Newton's method minimises
 /// τ ∫ dp/√y + Σ barrier(), for increasing τ. Every iterate keeps all bounds. The matrix of a step has two bands beside
@@ -56,21 +31,40 @@ class ClockSolver {
       : bounds_(bounds), spline_(bounds.size(), width) {
     for (std::size_t k = 0; k < 3; ++k) weights_[k] = spline_.weights(kFractions[k]);
     barriers_ = static_cast<double>(3 * bounds.size() * (2 + 4 * static_cast<std::size_t>(dof)));
+    constexpr double kStart = 0.5;  // Fraction of the largest constant y.
+    double largest = std::numeric_limits<double>::infinity();
+    for (const auto& interval : bounds_) {
+      for (const ClockBounds& each : interval) largest = std::min(largest, each.largest());
+    }
+    std::fill(spline_.coefficients().begin(), spline_.coefficients().end(), kStart * largest);
+    emphasis_ = barriers_ / (30.0 * duration(spline_));
+  }
+
+  [[nodiscard]] const ClockSpline& clock() const noexcept { return spline_; }
+
+  /// Gives y at the start and the end; zero: y is free. All bounds are kept: if they do not admit the given values, the
+  /// result is false, and clock() has values that they admit.
+  [[nodiscard]] bool give_ends(const ClockEnds& y) {
+    constexpr int kMostSteps = 200;  // Random paths need at most 30.
+    constexpr int kCentring = 10;
+    constexpr double kLeast = 1e-4;  // Shorter steps approach the largest values that the bounds admit.
+    given_ = y;
+    for (int steps = 0; steps < kMostSteps; ++steps) {
+      const double length = approach();
+      for (int k = 0; k < kCentring && step(emphasis_) > 1e-2 * barriers_; ++k) {
+      }
+      if (length == 1.0) return true;
+      if (length < kLeast) return false;
+    }
+    return false;
   }
 
   /// The clock. The duration exceeds the duration at the minimum by at most the factor kGap, for convex bounds.
   [[nodiscard]] ClockSpline solve() {
     constexpr double kGap = 5e-4;
-    constexpr double kStart = 0.5;   // Fraction of the largest constant y.
     constexpr double kGrowth = 6.0;  // Factor of τ. 4 to 10 need 25 to 35 steps.
     constexpr int kMostSteps = 200;  // Random paths need at most 60.
-    std::vector<double>& c = spline_.coefficients();
-    double largest = std::numeric_limits<double>::infinity();
-    for (const auto& interval : bounds_) {
-      for (const ClockBounds& each : interval) largest = std::min(largest, each.largest());
-    }
-    std::fill(c.begin(), c.end(), kStart * largest);
-    double emphasis = barriers_ / (30.0 * duration(spline_));
+    double emphasis = emphasis_;
     for (int steps = 0; steps < kMostSteps; emphasis *= kGrowth) {
       // A decrement of 1 % of the number of bounds changes the duration by much less than the gap.
       while (steps++ < kMostSteps && step(emphasis) > 1e-2 * barriers_) {
@@ -102,20 +96,43 @@ class ClockSolver {
     return sum;
   }
 
+  /// A step of Newton's method toward the given values at the ends, as long as the bounds admit. Returns its length.
+  double approach() {
+    assemble(emphasis_, false);
+    const double last = spline_.at(bounds_.size() - 1, 1.0).y;
+    direction({given_[0] - spline_.at(0, 0.0).y, given_[1] - last});
+    ClockSpline next = spline_;
+    double length = 1.0;
+    for (int k = 0; k < kLengths; ++k, length *= kShorter) {
+      move(next, length);
+      if (!(merit(next, emphasis_) < std::numeric_limits<double>::infinity())) continue;
+      constexpr double kInside = 0.9;  // Of the longest step, so that the next step can be as long.
+      if (length < 1.0) move(next, length *= kInside);
+      spline_ = next;
+      return length;
+    }
+    return 0.0;
+  }
+
+  void move(ClockSpline& next, double length) const {
+    for (std::size_t i = 0; i < system_.size(); ++i) {
+      next.coefficients()[i] = spline_.coefficients()[i] + length * system_.right[i];
+    }
+  }
+
+  static constexpr double kShorter = 0.6;
+  static constexpr int kLengths = 40;  // The shortest step is 1e-9 of the step of Newton's method.
+
   /// One step of Newton's method with a line search. Returns the decrement of Newton's method.
   double step(double emphasis) {
-    assemble(emphasis);
-    const double decrement = direction();
+    assemble(emphasis, true);
+    const double decrement = direction({});
     constexpr double kArmijo = 0.1;
-    constexpr double kShorter = 0.6;
-    constexpr int kLengths = 40;  // The shortest step is 1e-9 of the step of Newton's method.
     const double before = merit(spline_, emphasis);
     ClockSpline next = spline_;
     double length = 1.0;
     for (int k = 0; k < kLengths; ++k, length *= kShorter) {
-      for (std::size_t i = 0; i < step_.size(); ++i) {
-        next.coefficients()[i] = spline_.coefficients()[i] + length * step_[i];
-      }
+      move(next, length);
       if (merit(next, emphasis) <= before - kArmijo * length * decrement) {
         spline_ = next;
         return decrement;
@@ -124,10 +141,16 @@ class ClockSolver {
     return 0.0;
   }
 
-  /// Gradient of the merit, and the diagonal and the two bands of its Hessian.
-  void assemble(double emphasis) {
-    matrix_.assign(spline_.coefficients().size(), {});
-    step_.assign(matrix_.size(), 0.0);
+  /// Whether y is given at a place of an interval.
+  [[nodiscard]] bool gives(std::size_t interval, std::size_t place) const noexcept {
+    return (interval == 0 && place == 0 && given_[0] > 0.0) ||
+           (interval + 1 == bounds_.size() && place == 2 && given_[1] > 0.0);
+  }
+
+  /// Gradient of the merit, and the diagonal and the two bands of its Hessian. constant: whether the given y do not
+  /// change; without their derivatives, which are large at low speeds, the round-off errors are smaller.
+  void assemble(double emphasis, bool constant) {
+    system_.reset(spline_.coefficients().size());
     for (std::size_t i = 0; i < bounds_.size(); ++i) {
       for (std::size_t k = 0; k < 3; ++k) {
         const auto& w = weights_[k];
@@ -136,35 +159,30 @@ class ClockSolver {
         std::array<double, 3> g{-rate / 2.0, 0.0, 0.0};
         std::array<double, 6> h{0.75 * rate / at.y, 0.0, 0.0, 0.0, 0.0, 0.0};
         bounds_[i][k].add_derivatives(at, g, h);
+        if (constant && gives(i, k)) g[0] = h[0] = h[1] = h[2] = 0.0;
         for (std::size_t r = 0; r < 3; ++r) {
-          step_[i + r] -= g[0] * w[0][r] + g[1] * w[1][r] + g[2] * w[2][r];
+          system_.right[i + r] -= g[0] * w[0][r] + g[1] * w[1][r] + g[2] * w[2][r];
           const std::array<double, 3> row{h[0] * w[0][r] + h[1] * w[1][r] + h[2] * w[2][r],
                                           h[1] * w[0][r] + h[3] * w[1][r] + h[4] * w[2][r],
                                           h[2] * w[0][r] + h[4] * w[1][r] + h[5] * w[2][r]};
           for (std::size_t c = r; c < 3; ++c) {
-            matrix_[i + r][c - r] += row[0] * w[0][c] + row[1] * w[1][c] + row[2] * w[2][c];
+            system_.matrix[i + r][c - r] += row[0] * w[0][c] + row[1] * w[1][c] + row[2] * w[2][c];
           }
         }
       }
     }
   }
 
-  /// Solves for the step of Newton's method by LDLᵀ with two bands, in place. Returns the decrement.
-  double direction() {
-    const std::size_t n = step_.size();
-    for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t k = 1; k < 3 && i + k < n; ++k) {
-        const double factor = matrix_[i][k] / matrix_[i][0];
-        for (std::size_t c = k; c < 3; ++c) matrix_[i + k][c - k] -= factor * matrix_[i][c];
-        step_[i + k] -= factor * step_[i];
-      }
-    }
-    double decrement = 0.0;
-    for (std::size_t i = n; i-- > 0;) {
-      decrement += step_[i] * step_[i] / matrix_[i][0];
-      for (std::size_t k = 1; k < 3 && i + k < n; ++k) step_[i] -= matrix_[i][k] * step_[i + k];
-      step_[i] /= matrix_[i][0];
-    }
+  /// Solves for the step of Newton's method. Returns the decrement. changes: of the given values at the ends, where y
+  /// is the mean of two coefficients.
+  double direction(const ClockEnds& changes) {
+    const std::size_t n = system_.size();
+    if (given_[0] > 0.0) system_.require_sum(0, 1, 2, 2.0 * changes[0]);
+    if (given_[1] > 0.0) system_.require_sum(n - 1, n - 2, n - 3, 2.0 * changes[1]);
+    const double decrement = system_.solve();
+    std::vector<double>& x = system_.right;
+    if (given_[0] > 0.0) x[0] = 2.0 * changes[0] - x[1];
+    if (given_[1] > 0.0) x[n - 1] = 2.0 * changes[1] - x[n - 2];
     return decrement;
   }
 
@@ -172,8 +190,9 @@ class ClockSolver {
   ClockSpline spline_;
   std::array<std::array<std::array<double, 3>, 3>, 3> weights_{};
   double barriers_;
-  std::vector<std::array<double, 3>> matrix_;
-  std::vector<double> step_;
+  double emphasis_;  ///< First τ.
+  ClockEnds given_{};
+  BandedSystem system_;  ///< Its solution is the step of Newton's method.
 };
 
 }  // namespace fpbm

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -12,19 +13,23 @@
 namespace fpbm {
 
 /// Calls f(velocity, acceleration, jerk) with the differences of the positions of a motion at every dt [s], from rest.
-/// After the end, the joints keep their velocity.
+/// After the end, the joints keep their velocity, in the null space. moving: whether the tip moves at the start and at
+/// the end; differences across a moving end are zero.
 template <int N, typename F>
-void each_difference(const Spline<N>& joints, const FastestClock& clock, double dt, F&& f) {
+void each_difference(const Spline<N>& joints, const FastestClock& clock, double dt, F&& f,
+                     const std::array<bool, 2>& moving = {}) {
   Vector<N> q = joints.at(clock.at(0.0).s).x;
   Vector<N> velocity = filled<Vector<N>>(q.size());
   Vector<N> acceleration = velocity;
   const auto ticks = static_cast<int>(std::lround(clock.duration() / dt));
   const auto end = clock.at(clock.duration());
   const Vector<N> after = joints.at(end.s).xd * end.sd;
-  for (int k = 1; k <= ticks + 2; ++k) {
+  for (int k = 1; k <= (moving[1] ? ticks : ticks + 2); ++k) {
     const Vector<N> next = joints.at(clock.at(k * dt).s).x + std::max(k - ticks, 0) * dt * after;
     const Vector<N> v = (next - q) / dt;
+    if (moving[0] && k == 1) velocity = v;
     const Vector<N> a = (v - velocity) / dt;
+    if (moving[0] && k == 2) acceleration = a;
     f(v, a, Vector<N>((a - acceleration) / dt));
     q = next;
     velocity = v;
@@ -33,19 +38,21 @@ void each_difference(const Spline<N>& joints, const FastestClock& clock, double 
 }
 
 /// The factor by which a clock must be slower, so that the differences of positions at every dt [s] keep the bounds on
-/// velocity, acceleration and jerk, from rest to rest.
+/// velocity, acceleration and jerk, from rest to rest or with moving ends.
 template <int N>
 [[nodiscard]] double excess_of_differences(const Spline<N>& joints, const FastestClock& clock,
-                                           const JointLimits<N>& limits, double dt) {
+                                           const JointLimits<N>& limits, double dt,
+                                           const std::array<bool, 2>& moving = {}) {
   const JointLimits<N> complete = limits.complete();
   const auto ratio = [](const Vector<N>& difference, const Vector<N>& bound) {
     return difference.cwiseAbs().cwiseQuotient(bound).maxCoeff();
   };
   double excess = 0.0;
-  each_difference(joints, clock, dt, [&](const Vector<N>& v, const Vector<N>& a, const Vector<N>& j) {
+  const auto largest = [&](const Vector<N>& v, const Vector<N>& a, const Vector<N>& j) {
     excess = std::max({excess, ratio(v, complete.velocity), std::sqrt(ratio(a, complete.acceleration)),
                        std::cbrt(ratio(j, complete.jerk))});
-  });
+  };
+  each_difference(joints, clock, dt, largest, moving);
   return excess;
 }
 
