@@ -48,8 +48,8 @@ JointPath<kDynamic> Motion<Space>::joint_path(double duration, const std::shared
     const auto result = motion.simulate(output);
     for (Eigen::Index i = 0; i < result.samples; ++i) nodes.q.emplace_back(rows[0].row(i).transpose());
     if (failed(result.status)) return result;
-    nodes.end.resize(2, start.q.size());
-    nodes.end << rows[1].bottomRows(1), rows[2].bottomRows(1);
+    nodes.end = Spline<kDynamic>::Rates::Zero(2, start.q.size());
+    if (scheme.level == Level::kAcceleration) nodes.end << rows[1].bottomRows(1), rows[2].bottomRows(1);
     if (plan) nodes = nodes.at_places(plan->clock, duration);
     return result;
   });

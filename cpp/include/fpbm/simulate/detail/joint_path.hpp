@@ -26,7 +26,7 @@ struct JointPath {
 };
 
 /// Joint positions of a motion at equal steps, and the velocity and the acceleration at the end, where the joints of
-/// some schemes move in the null space.
+/// schemes at acceleration level may move in the null space.
 template <int N>
 struct JointNodes {
   std::vector<Vector<N>> q;
@@ -121,8 +121,8 @@ template <typename Arm, typename Path, typename Scheme>
   const auto run = [&](int intervals, JointNodes<Arm::kDof>& nodes) {
     const auto add = [&](const auto& sample) {
       nodes.q.push_back(sample.q);
-      nodes.end.resize(2, q0.size());
-      nodes.end << sample.qd.transpose(), sample.qdd.transpose();
+      nodes.end = Spline<Arm::kDof>::Rates::Zero(2, q0.size());
+      if constexpr (Scheme::kLevel == Level::kAcceleration) nodes.end << sample.qd.transpose(), sample.qdd.transpose();
       return true;
     };
     const TimeGrid<double> grid(timed.duration(), timed.duration() / intervals);
