@@ -816,8 +816,8 @@ class Tracker:
             Whether the tip stays on the path if the path is faster than the limits allow (docs: Paths in the least time). The
             clock of fastest(), slowed by the reserve, replaces the time law. Obstacles, other targets and disturbances, which
             the plan does not know, slow the clock further. The ramp is extended until no change of the speed exceeds a bound.
-            With keep_first_level, stop stops the arm on the path. Needs a scheme at velocity level, and an arm at rest; takes
-            some 50 ms.
+            With keep_first_level, stop stops the arm on the path. Needs an arm at rest; takes some 50 ms, at acceleration level
+            some 150 ms.
         reserve : float
             Fraction by which the motion lasts longer than the least time.
 

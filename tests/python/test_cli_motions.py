@@ -105,7 +105,7 @@ def test_a_kept_path_without_a_duration_is_as_fast_as_possible() -> None:
     fast = run_of("fast", "fastest", "panda", "--radius", "0.15", "--task", "pose")
     assert fast.path == path
     assert fast == replace(fp.fastest(arm, path, fp.MVN(), PANDA_READY, task="pose"), options=fast.options)
-    kept = run_of("kept", "track", "panda", "--radius", "0.15", "--task", "pose", "--keep-path")
+    kept = run_of("kept", "track", "panda", "--radius", "0.15", "--task", "pose", "--scheme", "mvn", "--keep-path")
     assert kept.path == path
     expected = fp.track(arm, path, fp.MVN(), PANDA_READY, task="pose", keep_path=True, null_damping=0)
     np.testing.assert_array_equal(kept.q, expected.q)
@@ -550,7 +550,6 @@ TWO_BRANCHES = """<robot name="two"><link name="base"/><link name="camera"/><lin
         (["panda", "--at-speed", "1", "--at-acceleration", "x"], "--at-acceleration = 'x': must be a number"),
         (["panda", "--reserve", "0.1"], "--reserve: has no effect without keep_path: give keep_path"),
         (["panda", "--keep-path", "--reserve", "-1"], "--reserve = -1: must be finite and not negative"),
-        (["panda", "--keep-path", "--scheme", "fpbm"], "--keep-path needs a scheme at velocity level"),
         (["panda", "--keep-path", "--qd0", "1,0,0,0,0,0,0"], "--qd0: must be zero with keep_path"),
         (["panda", "--keep-path", "--q0", "0,0"], "--q0 has 2 entries: must have 7, one per joint"),
         (["panda", "--keep-path", "--radius", "0.6"], "path: can be followed to the fraction 0."),

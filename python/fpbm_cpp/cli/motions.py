@@ -53,8 +53,7 @@ def track(request: Request, out: Path | None, dark: bool, also: tuple[str, ...])
     The arm keeps its joint limits, as in fpbm_cpp.track. With --no-limits, it moves by the scheme alone, as in
     fpbm_cpp.simulate. With --job, it keeps limits if the job has limits, or with --limits.
 
-    With --keep-path, the tip stays on the path, as in fpbm_cpp.track(keep_path=True). The scheme is then at velocity
-    level, by default mvn.
+    With --keep-path, the tip stays on the path, as in fpbm_cpp.track(keep_path=True).
 
     With --out, the folder gets run.png, run.npz, which fpbm_cpp.load reads, and job.toml, which contains all options.
     If the motion stops early, the exit status is 1, and the motion before the stop is still printed and written.
@@ -98,7 +97,7 @@ def fastest(
     For ARM and the options, see track. The written job.toml keeps the path.
     """
     _require_out(out, also)
-    motion = request.motion(at_rest=True, limited=True, keep_path=True)
+    motion = request.motion(request.scheme_of_velocity, at_rest=True, limited=True, keep_path=True)
     with request.plain():
         run = motion.fastest(
             tip_speed=tip_speed, tip_acceleration=tip_acceleration, start_speed=start_speed, end_speed=end_speed

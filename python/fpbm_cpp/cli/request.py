@@ -224,8 +224,6 @@ class Request:
         if keep_path and isinstance(run, dict):
             run = {"reserve": known("run")["reserve"].usual, **run, "keep_path": True}
             table = {**table, "run": run}
-        if kind is None and isinstance(run, dict) and run.get("keep_path"):
-            kind = self.scheme_of_velocity
         for section in ("clearance", "bounds"):
             if section in table and "clearance" not in self.sections:
                 command = click.get_current_context().info_name
