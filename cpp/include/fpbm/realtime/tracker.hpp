@@ -23,7 +23,6 @@ namespace fpbm {
 /// that accepts positions or velocities and follows them closely. resolve_measured() computes the acceleration for a
 /// measured state, for a torque controller. Never pass a measured state to tick(): the feedback would act twice, and
 /// noise would enter the command.
-///
 /// After construction, no function allocates, throws, locks or does I/O. Equal inputs give equal bits.
 template <typename Arm, typename Space, typename Scheme, typename Bounds_ = Bounds<>>
 class Tracker {
@@ -86,7 +85,7 @@ class Tracker {
     return result;
   }
 
-  /// Sets the state of the joints on a kept path that the null space of the next tick() with references approaches.
+  /// Sets the state of the joints on a kept path, which the null space approaches in the next advance().
   void approach(const JointState& planned) noexcept { state_.planned = planned; }
 
   /// One tick with references: TickReferences or PathReferences.
@@ -146,8 +145,7 @@ class Tracker {
   [[nodiscard]] const JointVector& acceleration() const noexcept { return state_.tick.last; }
   [[nodiscard]] const JointVector& acceleration_change() const noexcept { return state_.tick.change; }
   [[nodiscard]] const Arm& arm() const noexcept { return arm_; }
-  /// The scheme, with the damping of the options.
-  [[nodiscard]] const Scheme& scheme() const noexcept { return scheme_; }
+  [[nodiscard]] const Scheme& scheme() const noexcept { return scheme_; }  ///< With the damping of the options.
   /// Bits of the continuous joints.
   [[nodiscard]] JointBits continuous() const noexcept { return state_.continuous; }
   /// Enables or disables level k > 0 of a stack, within all bounds. If there is no level k, returns false.
@@ -163,9 +161,7 @@ class Tracker {
   bool reorder(const Order& order) noexcept {
     static_assert(kIsProduct<Space>, "only a stack has levels to reorder");
     if (!arm_.reorder(order)) return false;
-    state_.correction.reset_integrals(0, Space::kRows);
-    state_.held_level.release();
-    state_.lower_levels.release();
+    state_.reordered();
     return true;
   }
 

@@ -54,7 +54,7 @@ struct TrackerState {
   Progress<Space, N, Scalar> progress;
   typename LowerLevelsOf<Space, Scalar>::type lower_levels;
   std::conditional_t<kHasLevels, HeldLevel<Space, Scalar>, NoHeldLevel> held_level;
-  JointState planned;    ///< Of a kept path, at the start of the tick.
+  JointState planned;    ///< The state of the joints on a kept path, at the start of the tick.
   JointBits continuous;  ///< Bits of the continuous joints.
   bool keeps_first_level;
   bool returning;  ///< Whether the joints return from a start outside their bounds.
@@ -76,6 +76,13 @@ struct TrackerState {
   void resume() noexcept {
     stopping = false;
     progress.try_again();
+    held_level.release();
+    lower_levels.release();
+  }
+
+  /// The levels of a stack have a new order.
+  void reordered() noexcept {
+    correction.reset_integrals(0, Space::kRows);
     held_level.release();
     lower_levels.release();
   }
