@@ -237,6 +237,24 @@ TEST(KeptPath, is_kept_by_a_clock_that_changes_as_fast_as_the_limits_allow) {
   });
 }
 
+TEST(KeptPath, begins_with_a_joint_on_a_bound) {
+  Bounds<> none;
+  at_both_levels([&](const auto& scheme) {
+    for (const bool upper : {true, false}) {
+      JointVector q0 = kBent;
+      q0(6) = upper ? panda().limits().upper(6) : panda().limits().lower(6);
+      const auto path = InPlane(Path(Circle(0.1), 0.5, Quintic{}), {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0});
+      Tracker tracker(panda(), Position<3>{}, scheme, q0, options_of(true));
+      const auto kept = kept_path(panda(), path, tracker.scheme(), q0, panda().limits(), none, kOptions);
+      PathFollower follower(kept, tracker.tip());
+      const Ride found = ride(tracker, follower, kNothing);
+      EXPECT_TRUE(found.done);
+      EXPECT_LE(found.error, kOnPath<std::decay_t<decltype(scheme)>>);
+      EXPECT_LE(found.ratio, 1.0 + 1e-9);
+    }
+  });
+}
+
 TEST(KeptPath, stops_on_the_path_with_keep_first_level) {
   Bounds<> none;
   at_both_levels([&](const auto& scheme) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "fpbm/core/status.hpp"
@@ -48,10 +49,13 @@ template <typename Desired, typename Box, int N, int P, typename Scalar>
   const Vector<N, Scalar> change = desired.u - still;
   Scalar low(0);
   Scalar high = most;
+  // A joint on a bound may have the round-off error of a rate, which must not stop the clock. nearest() removes it.
+  constexpr Scalar kRoundOff = Scalar(1e6) * std::numeric_limits<Scalar>::epsilon();
+  const Scalar least = kRoundOff * largest_magnitude(change);
   // Admits only fractions with lower ≤ σ rate ≤ upper.
   const auto narrow = [&](Scalar rate, Scalar lower, Scalar upper) noexcept {
-    if (rate == Scalar(0)) {
-      if (lower > Scalar(0) || upper < Scalar(0)) high = Scalar(-1);
+    if (std::abs(rate) <= least) {
+      if (lower > least || upper < -least) high = Scalar(-1);
       return;
     }
     low = std::max(low, (rate > Scalar(0) ? lower : upper) / rate);
