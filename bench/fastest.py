@@ -194,7 +194,10 @@ def kept_rides(name: str, run: fp.Run, level: str, random: np.random.Generator) 
             if not with_ball(ride, place):
                 continue
         else:
-            ride = Ride(run, level, bounds)
+            try:
+                ride = Ride(run, level, bounds)
+            except fp.ParameterError:  # At acceleration level, the joint path is another one, and may leave a range.
+                continue
             if kind == "operator":
                 with_operator(ride, random)
             else:
