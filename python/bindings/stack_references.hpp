@@ -48,10 +48,14 @@ class StackReferences {
       std::visit([&](auto* each) { set_source_speed(*each, speed); }, source);
     }
   }
-  friend void look_ahead(StackReferences& references, bool stopping, AnyBounds& bounds,
-                         State<kDynamic>& planned) noexcept {
+  friend void take_planned_state(const StackReferences& references, State<kDynamic>& planned) noexcept {
     for (const auto& [task, source] : references.sources_) {
-      std::visit([&](auto* each) { look_ahead(*each, stopping, bounds, planned); }, source);
+      std::visit([&](auto* each) { take_planned_state(*each, planned); }, source);
+    }
+  }
+  friend void look_ahead(StackReferences& references, bool stopping, AnyBounds& bounds, const JointVector& q) noexcept {
+    for (const auto& [task, source] : references.sources_) {
+      std::visit([&](auto* each) { look_ahead(*each, stopping, bounds, q); }, source);
     }
   }
 

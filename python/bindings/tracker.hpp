@@ -50,9 +50,12 @@ class AnyTracker {
   template <typename Source>
   Result tick(Source&& source) noexcept {
     set_source_speed(source, speed_);
-    State<kDynamic> planned = state();
-    look_ahead(source, stopping_, bounds(), planned);
-    approach(planned);
+    look_ahead(source, stopping_, bounds(), state().q);
+    if (level_ == Level::kAcceleration) {
+      State<kDynamic> planned = state();
+      take_planned_state(source, planned);
+      approach(planned);
+    }
     const auto references = references_of(Space{}, dt_, source);
     Result result;
     if constexpr (kOfPath<std::decay_t<decltype(references)>>) {
@@ -125,7 +128,9 @@ class LaneTracker {
   Status finish(const Reference<Space>& now, const TickReferences<Space>& references, const Vector<N>& u) noexcept {
     return any_->finish(now, references, u);
   }
-  typename Any::Result advance(const TickReferences<Space>& references) noexcept { return any_->advance(references); }
+  typename Any::Result advance(const TickReferences<Space>& references) noexcept {
+    return any_->advance({references, 0.0});
+  }
 
  private:
   JointBits continuous_;

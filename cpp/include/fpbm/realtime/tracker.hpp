@@ -79,16 +79,15 @@ class Tracker {
   template <typename... Sources>
   Result tick(Sources&... sources) noexcept {
     (set_source_speed(sources, state_.speed), ...);
-    (look_ahead(sources, state_.stopping, state_.bounds, state_.planned), ...);
+    (look_ahead(sources, state_.stopping, state_.bounds, state_.tick.joints.q), ...);
+    if constexpr (kLevel == Level::kAcceleration) (take_planned_state(sources, state_.planned), ...);
     const Result result = advance(references_of(Space{}, state_.dt(), sources...));
     (advance_source(sources, state_.dt(), kLevel, state_.stopping, result.path_fraction), ...);
     return result;
   }
 
-  /// Sets the state of the joints on a kept path, which the null space approaches in the next advance().
+  /// One tick with TickReferences or PathReferences. approach(): state of a kept path that the null space approaches.
   void approach(const JointState& planned) noexcept { state_.planned = planned; }
-
-  /// One tick with references: TickReferences or PathReferences.
   template <typename References_>
   Result advance(const References_& references) noexcept {
     Result result = state_.idle(state_.tick.joints);

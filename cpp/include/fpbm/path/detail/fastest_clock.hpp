@@ -150,9 +150,10 @@ class FastestClock {
     const auto i = static_cast<std::size_t>(after - times_.begin()) - 1;
     // Newton's method for the fraction of the interval at which the time is `own`.
     double f = (own - times_[i]) / (times_[i + 1] - times_[i]);
-    for (int k = 0; k < (slow_.empty() ? kNewtonSteps : kNewtonStepsFromLowSpeeds); ++k) {
-      f += (own - times_[i] - time_in(i, f)) * std::sqrt(clock_.at(i, f).y) / clock_.width();
-      f = std::clamp(f, 0.0, 1.0);
+    double change = 1.0;
+    for (int k = 0; k < kNewtonSteps && std::abs(change) > kLastChange; ++k) {
+      change = (own - times_[i] - time_in(i, f)) * std::sqrt(clock_.at(i, f).y) / clock_.width();
+      f = std::clamp(f + change, 0.0, 1.0);
     }
     const ClockState state = clock_.at(i, f);
     return {start_ + (static_cast<double>(i) + f) * clock_.width(), rate_ * std::sqrt(state.y),
@@ -160,8 +161,8 @@ class FastestClock {
   }
 
  private:
-  static constexpr int kNewtonSteps = 5;                // 3 steps reach round-off in motions of all presets.
-  static constexpr int kNewtonStepsFromLowSpeeds = 12;  // 8 steps if y changes by 1e8 within an interval.
+  static constexpr int kNewtonSteps = 12;      // Usually 2 or 3; 8 if y changes by 1e8 within an interval.
+  static constexpr double kLastChange = 1e-8;  // Newton's method squares the error: the next change is round-off.
 
   template <int N>
   static double width_of(const Spline<N>& joints) noexcept {

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "fpbm/linalg/detail/null_basis.hpp"
+#include "fpbm/linalg/detail/product.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/realtime/detail/joint_approach.hpp"
 #include "fpbm/realtime/detail/require_stable.hpp"
@@ -41,22 +42,26 @@ void move_away(TrackerState& state, Desired& desired) noexcept {
   }
 }
 
-/// Adds the null-space acceleration toward the planned state of a kept path, since a motion in the null space does not
-/// stop with the clock.
-template <typename TrackerState, typename Desired>
-void approach_plan(const TrackerState& state, Desired& desired) noexcept {
-  using Scalar = typename TrackerState::Scalar;
+/// Null-space acceleration toward the planned state of a kept path, since a motion in the null space does not stop with
+/// the clock: the motion to be added to the result of the scheme for `middle`. Of a single task, `middle` becomes
+/// xdd − J z, so that the acceleration z can be added: J⁺(xdd − J z) + z.
+template <typename TrackerState, typename Kinematics_, typename Space, typename Scalar>
+[[nodiscard]] auto toward_plan(const TrackerState& state, const Kinematics_& kinematics,
+                               Reference<Space, Scalar>& middle) noexcept {
   // Critically damped, to 1 % in 1.3 s, as the usual gains of a task.
   constexpr Scalar kStiffness = Scalar(25);
   constexpr Scalar kDamping = Scalar(10);
   const auto& now = state.tick.joints;
   const auto& planned = state.planned;
-  const auto toward = entrywise(now.q, [&](Eigen::Index i) {
+  const typename TrackerState::JointVector z = entrywise(now.q, [&](Eigen::Index i) {
     return kStiffness * (planned.q.coeff(i) - now.q.coeff(i)) + kDamping * (planned.qd.coeff(i) - now.qd.coeff(i));
   });
-  const auto motion = null_space_motion(jacobian_in_metres(desired.loop.kinematics), toward);
-  desired.u += motion;
-  desired.still += motion;
+  if constexpr (kIsProduct<Space>) {
+    return null_space_motion(jacobian_in_metres(kinematics), z);
+  } else {
+    middle.xdd -= product(kinematics.J, z);
+    return z;
+  }
 }
 
 /// The reference `middle` of a tick, for a reference that stops in the tick: at velocity level, at rest in the tick; at
@@ -101,11 +106,13 @@ template <typename Arm, typename Scheme, typename TrackerState, typename Referen
   if (state.correction.active()) {
     for (auto& stage : references.stages) stage = state.correction(stage);
   }
-  const auto middle = state.tick.update_middle(desired.loop, references, gains_of<Scalar>(scheme));
+  auto middle = state.tick.update_middle(desired.loop, references, gains_of<Scalar>(scheme));
+  [[maybe_unused]] JointVector added = filled<JointVector>(joints.q.size());
   if constexpr (kOnPath) {
     if (state.on_path()) {
+      if constexpr (TrackerState::kLevel == Level::kAcceleration) added = toward_plan(state, kinematics, middle);
       (void)desired.loop.resolve(at_rest<TrackerState::kLevel>(middle, references));  // Fails only if `middle` fails.
-      desired.still = desired.loop.motion();
+      desired.still = desired.loop.motion() + added;
     }
   }
   result.status = desired.loop.resolve(middle);
@@ -114,11 +121,15 @@ template <typename Arm, typename Scheme, typename TrackerState, typename Referen
     return desired;
   }
   state.tick.reference_change = references.change();
-  desired.u = state.lower_levels.rests() ? state.tick.slowed() : desired.loop.motion();
-  if (state.bounds.moves_away()) move_away(state, desired);
-  if constexpr (kOnPath && TrackerState::kLevel == Level::kAcceleration) {
-    if (state.on_path()) approach_plan(state, desired);
+  if (state.lower_levels.rests()) {
+    desired.u = state.tick.slowed();
+  } else {
+    desired.u = desired.loop.motion();
+    if constexpr (kOnPath) {
+      if (state.on_path()) desired.u += added;
+    }
   }
+  if (state.bounds.moves_away()) move_away(state, desired);
   return desired;
 }
 

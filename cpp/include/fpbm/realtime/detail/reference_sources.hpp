@@ -30,11 +30,9 @@ template <typename Space, typename Scalar>
 void advance_source(const Reference<Space, Scalar>&, Scalar, Level, bool, Scalar) noexcept {}
 template <typename Path, typename Scalar>
 void advance_source(PathFollower<Path>& source, Scalar dt, Level level, bool stopping, Scalar fraction) noexcept {
-  if (source.kept() != nullptr) {
-    source.advance(dt, fraction, level);
-  } else if (!stopping) {
-    source.advance(dt);
-  }
+  if (source.kept() == nullptr) return;
+  planned = source.template planned<std::decay_t<decltype(planned.q)>::RowsAtCompileTime>();
+}
 }
 template <typename Space, typename Scalar>
 void advance_source(TargetFilter<Space, Scalar>& source, Scalar, Level, bool, Scalar) noexcept {
@@ -60,21 +58,29 @@ template <typename Path>
 inline constexpr bool kMayKeep<PathFollower<Path>> = kMayBeKept<Path>;
 
 /// Limits the rate of the clock of a kept path before a tick: to 0 while the arm stops, and before postures that are
-/// closer to the bounds than planned, since an obstacle has moved. Sets the planned state of the joints.
-template <typename Source, typename Bounds_, typename JointState>
-void look_ahead(Source&, bool, Bounds_&, JointState&) noexcept {}
-template <typename Path, typename Bounds_, typename JointState, typename = std::enable_if_t<kMayBeKept<Path>>>
-void look_ahead(PathFollower<Path>& source, bool stopping, Bounds_& bounds, JointState& planned) noexcept {
-  constexpr int N = std::decay_t<decltype(planned.q)>::RowsAtCompileTime;
+/// closer to the bounds than planned, since an obstacle has moved. q: posture of the arm.
+template <typename Source, typename Bounds_, typename JointVector>
+void look_ahead(Source&, bool, Bounds_&, const JointVector&) noexcept {}
+template <typename Path, typename Bounds_, typename JointVector, typename = std::enable_if_t<kMayBeKept<Path>>>
+void look_ahead(PathFollower<Path>& source, bool stopping, Bounds_& bounds, const JointVector&) noexcept {
   const KeptMotion* const kept = source.kept();
   if (kept == nullptr) return;
   double rate = stopping ? 0.0 : 1.0;
   if (!stopping && !bounds.empty()) {
     const double t = source.stop_time();
-    rate = kept->rate(t, bounds.closeness(kept->template posture<N>(t), KeptMotion::kRange));
+    const auto q = kept->template posture<JointVector::RowsAtCompileTime>(t);
+    rate = kept->rate(t, bounds.closeness(q, KeptMotion::kRange));
   }
   source.limit_rate(rate);
-  planned = source.template planned<N>();
+}
+
+/// Sets the planned state of the joints on a kept path.
+template <typename Source, typename JointState>
+void take_planned_state(const Source&, JointState&) noexcept {}
+template <typename Path, typename JointState, typename = std::enable_if_t<kMayBeKept<Path>>>
+void take_planned_state(const PathFollower<Path>& source, JointState& planned) noexcept {
+  if (source.kept() != nullptr)
+    planned = source.template planned<std::decay_t<decltype(planned.q)>::RowsAtCompileTime>();
 }
 
 /// Largest Tick::path_fraction of a kept path in the coming tick (PathFollower::most_fraction()); 0 for another source.
