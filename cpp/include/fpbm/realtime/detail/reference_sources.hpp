@@ -30,9 +30,11 @@ template <typename Space, typename Scalar>
 void advance_source(const Reference<Space, Scalar>&, Scalar, Level, bool, Scalar) noexcept {}
 template <typename Path, typename Scalar>
 void advance_source(PathFollower<Path>& source, Scalar dt, Level level, bool stopping, Scalar fraction) noexcept {
-  if (source.kept() == nullptr) return;
-  planned = source.template planned<std::decay_t<decltype(planned.q)>::RowsAtCompileTime>();
-}
+  if (source.kept() != nullptr) {
+    source.advance(dt, fraction, level);
+  } else if (!stopping) {
+    source.advance(dt);
+  }
 }
 template <typename Space, typename Scalar>
 void advance_source(TargetFilter<Space, Scalar>& source, Scalar, Level, bool, Scalar) noexcept {
@@ -79,8 +81,8 @@ template <typename Source, typename JointState>
 void take_planned_state(const Source&, JointState&) noexcept {}
 template <typename Path, typename JointState, typename = std::enable_if_t<kMayBeKept<Path>>>
 void take_planned_state(const PathFollower<Path>& source, JointState& planned) noexcept {
-  if (source.kept() != nullptr)
-    planned = source.template planned<std::decay_t<decltype(planned.q)>::RowsAtCompileTime>();
+  if (source.kept() == nullptr) return;
+  planned = source.template planned<std::decay_t<decltype(planned.q)>::RowsAtCompileTime>();
 }
 
 /// Largest Tick::path_fraction of a kept path in the coming tick (PathFollower::most_fraction()); 0 for another source.
