@@ -20,8 +20,8 @@ namespace fpbm {
 /// and |r̈| ≤ 16/3/ramp² (TimeOptimalAxis): from 0 to 1 in one ramp (argument of the constructor), and in at most 1.25
 /// ramps if the change reverses another change. r is always in [0, 1].
 ///
-/// A follower of a kept path (kept_path()) has priority over time: a tracker slows the clock instead
-/// of leaving the path, if the limits or the bounds do not admit the motion.
+/// A kept path (kept_path()) has priority over time: a tracker slows the clock instead of leaving the path, if the
+/// limits or the bounds do not admit the motion.
 template <typename Path_>
 class PathFollower {
  public:

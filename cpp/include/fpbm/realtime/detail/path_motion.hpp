@@ -49,7 +49,8 @@ template <typename Desired, typename Box, int N, int P, typename Scalar>
   const Vector<N, Scalar> change = desired.u - still;
   Scalar low(0);
   Scalar high = most;
-  // A joint on a bound may have the round-off error of a rate, which must not stop the clock. nearest() removes it.
+  // The rate of a joint on a bound may be a round-off error, which must not stop the clock. box.nearest() removes the
+  // error. KeptPath.begins_with_a_joint_on_a_bound fails with 0.
   constexpr Scalar kRoundOff = Scalar(1e6) * std::numeric_limits<Scalar>::epsilon();
   const Scalar least = kRoundOff * largest_magnitude(change);
   // Admits only fractions with lower ≤ σ rate ≤ upper.

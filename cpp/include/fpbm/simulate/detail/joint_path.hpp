@@ -29,8 +29,8 @@ struct JointPath {
 /// schemes at acceleration level may move in the null space.
 template <int N>
 struct JointNodes {
-  std::vector<Vector<N>> q;
-  typename Spline<N>::Rates end;
+  std::vector<Vector<N>> q;       ///< [rad] or [m]
+  typename Spline<N>::Rates end;  ///< Derivatives with respect to the parameter of the steps.
 
   /// The spline of the positions. duration: of the motion [s].
   [[nodiscard]] Spline<N> spline(double duration) const {
@@ -59,7 +59,8 @@ struct JointNodes {
   }
 };
 
-/// Sets the result of a motion that its steps do not resolve: the motion is lost where the joints move fastest.
+/// Sets the result of a motion along positions q whose steps are too long: the task is lost where a joint moves by the
+/// longest step.
 template <int N>
 void set_unresolved(RolloutResult<N>& result, const std::vector<Vector<N>>& q) {
   double longest = 0.0;

@@ -13,8 +13,8 @@
 namespace fpbm {
 
 /// Calls f(velocity, acceleration, jerk) with the differences of the positions of a motion at every dt [s], from rest.
-/// After the end, the joints keep their velocity, in the null space. moving: whether the tip moves at the start and at
-/// the end; differences across a moving end are zero.
+/// After the end, the joints keep the velocity that they have in the null space. moving: whether the tip moves at the
+/// start and at the end; differences across a moving end are zero.
 template <int N, typename F>
 void each_difference(const Spline<N>& joints, const FastestClock& clock, double dt, F&& f,
                      const std::array<bool, 2>& moving = {}) {
