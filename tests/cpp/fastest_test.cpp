@@ -15,6 +15,7 @@
 #include "fpbm/path/waypoints.hpp"
 #include "fpbm/scheme/schemes.hpp"
 #include "support/arms.hpp"
+#include "support/expect_refused.hpp"
 #include "support/random.hpp"
 
 /// fastest(): the tip stays on the path, no bound is exceeded by differences, and the duration is the least.
@@ -225,16 +226,6 @@ TEST(Fastest, is_slower_with_smaller_bounds) {
     const double duration = fastest_motion(panda(), circle(), bent(), limits).result.time;
     EXPECT_GT(duration, last);
     last = duration;
-  }
-}
-
-template <typename F>
-void expect_refused(const F& f, const std::string& part) {
-  try {
-    f();
-    ADD_FAILURE() << "accepted, without: " << part;
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
   }
 }
 

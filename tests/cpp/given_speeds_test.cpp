@@ -17,6 +17,7 @@
 #include "fpbm/simulate/fastest.hpp"
 #include "fpbm/simulate/kept_path.hpp"
 #include "support/arms.hpp"
+#include "support/expect_refused.hpp"
 #include "support/random.hpp"
 
 /// fastest() with start_speed and end_speed: the speeds are exact, the tip stays on the path, no bound is exceeded by
@@ -231,16 +232,6 @@ TEST(GivenSpeeds, may_be_low_or_equal_to_a_bound_on_the_tip) {
   options.tip_speed = 0.2;
   const double constant = 2.0 * 3.14159265358979 * 0.15 / 0.2;
   EXPECT_NEAR(fastest_motion(panda(), circle, bent(), options).result.time, constant, 2e-3);
-}
-
-template <typename F>
-void expect_refused(const F& f, const std::string& part) {
-  try {
-    f();
-    ADD_FAILURE() << "accepted, without: " << part;
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-  }
 }
 
 TEST(GivenSpeeds, that_have_no_answer_are_refused) {
