@@ -35,10 +35,10 @@ def ride(tracker, follower, each_tick=lambda k: None, most=60_000):
     return np.array(q), error
 
 
-def largest_ratio(q, limits):
+def largest_ratio(q, limits, dt=DT):
     q = np.vstack([q[:1]] * 3 + [q])
     bounds = [limits.velocity, limits.acceleration, limits.jerk]
-    return max(np.max(np.abs(np.diff(q, k, axis=0)) / DT**k / b) for k, b in enumerate(bounds, 1) if b is not None)
+    return max(np.max(np.abs(np.diff(q, k, axis=0)) / dt**k / b) for k, b in enumerate(bounds, 1) if b is not None)
 
 
 def operator_of(random, tracker, follower):
@@ -102,6 +102,18 @@ def test_the_loop_and_track_move_the_arm_alike(level):
     assert run.t[-1] < 1.26
     np.testing.assert_allclose(q[: len(run.q)], run.q, atol=1e-12)
     assert abs(len(q) - len(run.q)) <= 1
+
+
+@LEVELS
+@pytest.mark.parametrize("dt", [5e-4, 2e-3, 4e-3])
+@pytest.mark.parametrize("clear", [False, True])
+def test_ticks_of_any_length_keep_the_path(level, dt, clear):
+    bounds = [fp.Clearance.preset("panda")] if clear else []
+    tracker = tracker_of(scheme=scheme_of(level), dt=dt, bounds=bounds)
+    follower = tracker.follow(CIRCLE, keep_path=True)
+    q, error = ride(tracker, follower, operator_of(np.random.default_rng(2), tracker, follower))
+    assert error < (1e-5 if level == "velocity" else 1e-4)
+    assert largest_ratio(q, PANDA.limits, dt) <= 1 + 1e-8
 
 
 @LEVELS
