@@ -446,18 +446,18 @@ def test_ctrl_c_leaves_no_lock_acquired(arm):
 
 
 def interrupted(script, *arguments):
-    """Sends Ctrl-C a second after a script prints 'begun'. Returns the printed number of motions, and the delay [s]."""
+    """Sends Ctrl-C a second after a script prints 'begun'. Returns the number of finished motions, and the sweep."""
     command = [sys.executable, str(script), *map(str, arguments)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as child:
-        assert child.stdout.readline() == "begun\n"
-        time.sleep(1.0)
-        begin = time.perf_counter()
-        child.send_signal(signal.SIGINT)
-        said, done = child.stdout.readline().split()
-        elapsed = time.perf_counter() - begin
-        assert child.wait(30) == 0
-    assert said == "ended"
-    return int(done), elapsed
+        try:
+            assert child.stdout.readline() == "begun\n"
+            time.sleep(1.0)
+            child.send_signal(signal.SIGINT)
+            assert child.wait(60) == 0
+        finally:
+            child.kill()
+        done, sweep = child.stdout.readline().split(maxsplit=1)
+    return int(done), sweep
 
 
 SCRIPT = """
@@ -478,7 +478,7 @@ def main(executor, hold):
         try:
             fp.sweep(fp.PlanarArm([1, 1, 1, 1]), fp.Circle(0.45, 10.0), fp.MVN(), q0s, hold=float(hold), executor=pool)
         except fp.SweepInterrupted as interrupted:
-            print("ended", interrupted.sweep.done.sum(), flush=True)
+            print(interrupted.sweep.done.sum(), repr(interrupted.sweep), flush=True)
 
 if __name__ == "__main__":
     main(*sys.argv[1:])
@@ -490,19 +490,21 @@ if __name__ == "__main__":
     ("executor", "hold"),
     [
         ("nullcontext()", 0.0),
-        ("nullcontext()", 100000.0),
+        ("nullcontext()", 1000000.0),
         ("ThreadPoolExecutor(2)", 0.0),
-        ("ThreadPoolExecutor(2)", 100000.0),
+        ("ThreadPoolExecutor(2)", 1000000.0),
         ("ProcessPoolExecutor(2)", 0.0),
     ],
 )
 def test_ctrl_c_stops_immediately(tmp_path, executor, hold):
-    """Also during a motion of 100 million steps (15 s or more). The sweep does not wait for other processes."""
+    """Also during a motion of a billion steps, which takes minutes. The sweep does not wait for other processes."""
     script = tmp_path / "script.py"
     script.write_text(SCRIPT)
-    done, elapsed = interrupted(script, executor, hold)
-    assert (0 < done < 50000) if hold == 0.0 else done == 0
-    assert elapsed < 0.5
+    done, sweep = interrupted(script, executor, hold)
+    if hold == 0.0:
+        assert 0 < done < 50000, sweep
+    else:
+        assert done == 0, sweep
 
 
 @pytest.mark.parametrize(
