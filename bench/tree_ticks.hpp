@@ -55,7 +55,7 @@ struct UpperBodyInMotion {
   static std::string name() { return "g1_upper_body"; }
   static fpbm::Tree<> tree() {
     fpbm::Tree<> tree = g1_upper_body();
-    for (auto& [joint, parent, moved] : tree.joints) {
+    for (auto& [joint, parent] : tree.joints) {
       joint.bounds.velocity = 3.0;
       joint.bounds.acceleration = 15.0;
       joint.bounds.jerk = 5000.0;

@@ -43,7 +43,7 @@ inline fpbm::Tree<double, 17, 2> tree() {
   tree.joints[0].joint.axis = {0.0, 0.0, 1.0};
   tree.joints[0].joint.bounds = {-2.618, 2.618, 32.0};
   tree.joints[0].parent = 0;
-  tree.joints[0].moved = {0.214, {0.003494, 0.000233, 0.018034}};
+  tree.joints[0].joint.moved = {0.214, {0.003494, 0.000233, 0.018034}};
 
   tree.joints[1].joint.name = "waist_roll_joint";
   tree.joints[1].joint.type = fpbm::JointType::kRevolute;
@@ -51,14 +51,14 @@ inline fpbm::Tree<double, 17, 2> tree() {
   tree.joints[1].joint.axis = {1.0, 0.0, 0.0};
   tree.joints[1].joint.bounds = {-0.52, 0.52, 30.0};
   tree.joints[1].parent = 1;
-  tree.joints[1].moved = {0.086, {0.0, 2.3e-05, 0.0}};
+  tree.joints[1].joint.moved = {0.086, {0.0, 2.3e-05, 0.0}};
 
   tree.joints[2].joint.name = "waist_pitch_joint";
   tree.joints[2].joint.type = fpbm::JointType::kRevolute;
   tree.joints[2].joint.axis = {0.0, 1.0, 0.0};
   tree.joints[2].joint.bounds = {-0.52, 0.52, 30.0};
   tree.joints[2].parent = 2;
-  tree.joints[2].moved = {7.817, {0.002031334463349111, 0.00033972674939235003, 0.1845971451963669}};
+  tree.joints[2].joint.moved = {7.817, {0.002031334463349111, 0.00033972674939235003, 0.1845971451963669}};
 
   tree.joints[3].joint.name = "left_shoulder_pitch_joint";
   tree.joints[3].joint.type = fpbm::JointType::kRevolute;
@@ -71,7 +71,7 @@ inline fpbm::Tree<double, 17, 2> tree() {
   tree.joints[3].joint.axis = {0.0, 1.0, 0.0};
   tree.joints[3].joint.bounds = {-3.0892, 2.6704, 37.0};
   tree.joints[3].parent = 3;
-  tree.joints[3].moved = {0.718, {0.0, 0.035892, -0.011628}};
+  tree.joints[3].joint.moved = {0.718, {0.0, 0.035892, -0.011628}};
 
   tree.joints[4].joint.name = "left_shoulder_roll_joint";
   tree.joints[4].joint.type = fpbm::JointType::kRevolute;
@@ -84,7 +84,7 @@ inline fpbm::Tree<double, 17, 2> tree() {
   tree.joints[4].joint.axis = {1.0, 0.0, 0.0};
   tree.joints[4].joint.bounds = {-1.5882, 2.2515, 37.0};
   tree.joints[4].parent = 4;
-  tree.joints[4].moved = {0.643, {-0.00022700000000000002, 0.0072699999999999996, -0.063243}};
+  tree.joints[4].joint.moved = {0.643, {-0.00022700000000000002, 0.0072699999999999996, -0.063243}};
 
   tree.joints[5].joint.name = "left_shoulder_yaw_joint";
   tree.joints[5].joint.type = fpbm::JointType::kRevolute;
@@ -92,7 +92,7 @@ inline fpbm::Tree<double, 17, 2> tree() {
   tree.joints[5].joint.axis = {0.0, 0.0, 1.0};
   tree.joints[5].joint.bounds = {-2.618, 2.618, 37.0};
   tree.joints[5].parent = 5;
-  tree.joints[5].moved = {0.734, {0.010773, -0.002949, -0.072009}};
+  tree.joints[5].joint.moved = {0.734, {0.010773, -0.002949, -0.072009}};
 
   tree.joints[6].joint.name = "left_elbow_joint";
   tree.joints[6].joint.type = fpbm::JointType::kRevolute;
@@ -100,7 +100,7 @@ inline fpbm::Tree<double, 17, 2> tree() {
   tree.joints[6].joint.axis = {0.0, 1.0, 0.0};
   tree.joints[6].joint.bounds = {-1.0472, 2.0944, 37.0};
   tree.joints[6].parent = 6;
-  tree.joints[6].moved = {0.6, {0.064956, 0.004454, -0.010062}};
+  tree.joints[6].joint.moved = {0.6, {0.064956, 0.004454, -0.010062}};
 
   tree.joints[7].joint.name = "left_wrist_roll_joint";
   tree.joints[7].joint.type = fpbm::JointType::kRevolute;
@@ -108,7 +108,7 @@ inline fpbm::Tree<double, 17, 2> tree() {
   tree.joints[7].joint.axis = {1.0, 0.0, 0.0};
   tree.joints[7].joint.bounds = {-1.972222054, 1.972222054, 37.0};
   tree.joints[7].parent = 7;
-  tree.joints[7].moved = {0.08544498, {0.01713944778, 0.00053759094, 4.8864e-07}};
+  tree.joints[7].joint.moved = {0.08544498, {0.01713944778, 0.00053759094, 4.8864e-07}};
 
   tree.joints[8].joint.name = "left_wrist_pitch_joint";
   tree.joints[8].joint.type = fpbm::JointType::kRevolute;
@@ -116,7 +116,7 @@ inline fpbm::Tree<double, 17, 2> tree() {
   tree.joints[8].joint.axis = {0.0, 1.0, 0.0};
   tree.joints[8].joint.bounds = {-1.614429558, 1.614429558, 22.0};
   tree.joints[8].parent = 8;
-  tree.joints[8].moved = {0.48404956, {0.02299989837, -0.00111685314, -0.0011165809599999997}};
+  tree.joints[8].joint.moved = {0.48404956, {0.02299989837, -0.00111685314, -0.0011165809599999997}};
 
   tree.joints[9].joint.name = "left_wrist_yaw_joint";
   tree.joints[9].joint.type = fpbm::JointType::kRevolute;
@@ -124,7 +124,7 @@ inline fpbm::Tree<double, 17, 2> tree() {
   tree.joints[9].joint.axis = {0.0, 0.0, 1.0};
   tree.joints[9].joint.bounds = {-1.614429558, 1.614429558, 22.0};
   tree.joints[9].parent = 9;
-  tree.joints[9].moved = {0.25457647, {0.07082443020105138, 0.00019174529120036596, 0.0016174161391889757}};
+  tree.joints[9].joint.moved = {0.25457647, {0.07082443020105138, 0.00019174529120036596, 0.0016174161391889757}};
 
   tree.joints[10].joint.name = "right_shoulder_pitch_joint";
   tree.joints[10].joint.type = fpbm::JointType::kRevolute;
@@ -137,7 +137,7 @@ inline fpbm::Tree<double, 17, 2> tree() {
   tree.joints[10].joint.axis = {0.0, 1.0, 0.0};
   tree.joints[10].joint.bounds = {-3.0892, 2.6704, 37.0};
   tree.joints[10].parent = 3;
-  tree.joints[10].moved = {0.718, {0.0, -0.035892, -0.011628}};
+  tree.joints[10].joint.moved = {0.718, {0.0, -0.035892, -0.011628}};
 
   tree.joints[11].joint.name = "right_shoulder_roll_joint";
   tree.joints[11].joint.type = fpbm::JointType::kRevolute;
@@ -150,7 +150,7 @@ inline fpbm::Tree<double, 17, 2> tree() {
   tree.joints[11].joint.axis = {1.0, 0.0, 0.0};
   tree.joints[11].joint.bounds = {-2.2515, 1.5882, 37.0};
   tree.joints[11].parent = 11;
-  tree.joints[11].moved = {0.643, {-0.00022700000000000002, -0.0072699999999999996, -0.063243}};
+  tree.joints[11].joint.moved = {0.643, {-0.00022700000000000002, -0.0072699999999999996, -0.063243}};
 
   tree.joints[12].joint.name = "right_shoulder_yaw_joint";
   tree.joints[12].joint.type = fpbm::JointType::kRevolute;
@@ -158,7 +158,7 @@ inline fpbm::Tree<double, 17, 2> tree() {
   tree.joints[12].joint.axis = {0.0, 0.0, 1.0};
   tree.joints[12].joint.bounds = {-2.618, 2.618, 37.0};
   tree.joints[12].parent = 12;
-  tree.joints[12].moved = {0.734, {0.010773, 0.002949, -0.072009}};
+  tree.joints[12].joint.moved = {0.734, {0.010773, 0.002949, -0.072009}};
 
   tree.joints[13].joint.name = "right_elbow_joint";
   tree.joints[13].joint.type = fpbm::JointType::kRevolute;
@@ -166,7 +166,7 @@ inline fpbm::Tree<double, 17, 2> tree() {
   tree.joints[13].joint.axis = {0.0, 1.0, 0.0};
   tree.joints[13].joint.bounds = {-1.0472, 2.0944, 37.0};
   tree.joints[13].parent = 13;
-  tree.joints[13].moved = {0.6, {0.064956, -0.004454, -0.010062}};
+  tree.joints[13].joint.moved = {0.6, {0.064956, -0.004454, -0.010062}};
 
   tree.joints[14].joint.name = "right_wrist_roll_joint";
   tree.joints[14].joint.type = fpbm::JointType::kRevolute;
@@ -174,7 +174,7 @@ inline fpbm::Tree<double, 17, 2> tree() {
   tree.joints[14].joint.axis = {1.0, 0.0, 0.0};
   tree.joints[14].joint.bounds = {-1.972222054, 1.972222054, 37.0};
   tree.joints[14].parent = 14;
-  tree.joints[14].moved = {0.08544498, {0.01713944778, -0.00053759094, 4.8864e-07}};
+  tree.joints[14].joint.moved = {0.08544498, {0.01713944778, -0.00053759094, 4.8864e-07}};
 
   tree.joints[15].joint.name = "right_wrist_pitch_joint";
   tree.joints[15].joint.type = fpbm::JointType::kRevolute;
@@ -182,7 +182,7 @@ inline fpbm::Tree<double, 17, 2> tree() {
   tree.joints[15].joint.axis = {0.0, 1.0, 0.0};
   tree.joints[15].joint.bounds = {-1.614429558, 1.614429558, 22.0};
   tree.joints[15].parent = 15;
-  tree.joints[15].moved = {0.48404956, {0.02299989837, 0.00111685314, -0.0011165809599999997}};
+  tree.joints[15].joint.moved = {0.48404956, {0.02299989837, 0.00111685314, -0.0011165809599999997}};
 
   tree.joints[16].joint.name = "right_wrist_yaw_joint";
   tree.joints[16].joint.type = fpbm::JointType::kRevolute;
@@ -190,7 +190,7 @@ inline fpbm::Tree<double, 17, 2> tree() {
   tree.joints[16].joint.axis = {0.0, 0.0, 1.0};
   tree.joints[16].joint.bounds = {-1.614429558, 1.614429558, 22.0};
   tree.joints[16].parent = 16;
-  tree.joints[16].moved = {0.25457647, {0.07082443020105138, -0.00019174529120036596, 0.0016174161391889757}};
+  tree.joints[16].joint.moved = {0.25457647, {0.07082443020105138, -0.00019174529120036596, 0.0016174161391889757}};
 
   tree.frames[0].name = "left_wrist_yaw_link";
   tree.frames[0].link = 10;

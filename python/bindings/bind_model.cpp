@@ -158,8 +158,8 @@ py::typing::Tuple<py::typing::List<PlainTreeJoint>, py::typing::List<PlainFrame>
     py::list joints;
     py::list frames;
     const Tree<> tree = known.tree();
-    for (const auto& [joint, parent, moved] : tree.joints) {
-      joints.append(py::make_tuple(fields_of(joint), parent, moved.mass, array_of(moved.centre)));
+    for (const auto& [joint, parent] : tree.joints) {
+      joints.append(py::make_tuple(fields_of(joint), parent, joint.moved.mass, array_of(joint.moved.centre)));
     }
     for (const auto& [frame, link, offset] : tree.frames) frames.append(py::make_tuple(frame, link, array_of(offset)));
     return py::make_tuple(joints, frames, tree.base.mass, array_of(tree.base.centre));

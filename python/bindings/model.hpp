@@ -15,7 +15,7 @@ using JointVector = Vector<kDynamic>;
 /// The joints and frames of a robot or an arm, for all code that reads a robot's state, such as tasks and clearances.
 struct Model {
   explicit Model(const Tree<>& tree_, bool planar_ = false) : tree(tree_), robot(tree_), planar(planar_) {
-    for (const auto& [joint, parent, moved] : tree.joints) {
+    for (const auto& [joint, parent] : tree.joints) {
       if (joint.mimic.joint < 0) joint_names.push_back(joint.name);
     }
   }

@@ -127,7 +127,7 @@ template <typename Task>
 
 TEST(AnyFrameTask, has_the_rows_of_relative_tasks_and_of_the_center_of_mass) {
   Tree<> tree = two_pandas(true);
-  for (auto& each : tree.joints) each.moved = {1.0, Vector<3>(0.1, 0.2, 0.3)};
+  for (auto& each : tree.joints) each.joint.moved = {1.0, Vector<3>(0.1, 0.2, 0.3)};
   const Robot<kDynamic> robot(tree);
   const LinkFrame<> right = frame_of(tree, "right_tip");
   const LinkFrame<> left = frame_of(tree, "left_tip");

@@ -113,7 +113,7 @@ TEST(Separation, its_gradient_is_that_of_the_distance) {
 template <typename Scalar>
 [[nodiscard]] Tree<Scalar> tree_in(const Tree<>& tree) {
   Tree<Scalar> result;
-  for (const auto& [joint, parent, moved] : tree.joints) {
+  for (const auto& [joint, parent] : tree.joints) {
     Joint<Scalar> cast{joint.type, {}, joint.axis.template cast<Scalar>()};
     cast.placement.p = joint.placement.p.template cast<Scalar>();
     cast.placement.R = joint.placement.R.template cast<Scalar>();

@@ -37,7 +37,7 @@ constexpr int kOpen = Eigen::Dynamic;
       each.joint.bounds.upper = 3.0;
     }
     each.parent = chance(branching) ? below(i + 1) : i;
-    each.moved = {random.uniform(0.1, 5.0), random.uniform(3, -0.3, 0.3)};
+    each.joint.moved = {random.uniform(0.1, 5.0), random.uniform(3, -0.3, 0.3)};
     tree.joints.push_back(each);
   }
   std::vector<int> drives;
@@ -71,7 +71,7 @@ struct Textbook {
     Eigen::Index k = 0;
     for (std::size_t i = 0; i < drive.size(); ++i) drive[i] = tree.joints[i].joint.mimic.joint < 0 ? k++ : -1;
     for (std::size_t i = 0; i < drive.size(); ++i) {
-      const auto& [joint, parent, moved] = tree.joints[i];
+      const auto& [joint, parent] = tree.joints[i];
       const auto& [leader, ratio, offset] = joint.mimic;
       if (leader >= 0) drive[i] = drive[static_cast<std::size_t>(leader)];
       q.push_back(leader < 0 ? drives(drive[i]) : ratio * drives(drive[i]) + offset);
@@ -186,7 +186,7 @@ TEST(Tree, names_the_invalid_argument) {
             "joint 'right_panda_joint2'.parent = 4: must be the number of the parent link, at most 3");
   EXPECT_EQ(refusal([](Tree<>& tree) { tree.joints[3].joint.axis.setZero(); }),
             "joint 'right_panda_joint2'.axis is zero: must be a nonzero vector");
-  EXPECT_EQ(refusal([](Tree<>& tree) { tree.joints[3].moved.mass = -1.0; }),
+  EXPECT_EQ(refusal([](Tree<>& tree) { tree.joints[3].joint.moved.mass = -1.0; }),
             "joint 'right_panda_joint2'.moved.mass = -1: must be finite and not negative");
   EXPECT_EQ(refusal([](Tree<>& tree) { tree.frames[1].link = 17; }),
             "frames[1].link = 17: must be the number of a link, at most 16");

@@ -272,8 +272,8 @@ TEST(SerialArm, of_a_chain_of_known_length_is_the_same) {
     Chain<double, 7> fixed;
     fixed.tip = chain.tip;
     for (std::size_t i = 0; i < 7; ++i) {
-      const auto& [type, placement, axis, bounds, name, mimic] = chain.joints[i];
-      fixed.joints[i] = {type, placement, axis, bounds, name, mimic};
+      const auto& [type, placement, axis, bounds, name, mimic, moved, drive] = chain.joints[i];
+      fixed.joints[i] = {type, placement, axis, bounds, name, mimic, moved, drive};
     }
     const State<7> state{Vector<7>(random.uniform(7, -2.0, 2.0)), Vector<7>(random.uniform(7, -2.0, 2.0))};
     Kinematics<Pose, 7> a;

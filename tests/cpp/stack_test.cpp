@@ -211,7 +211,7 @@ TEST(Task, of_a_tree_has_the_rows_of_its_point_s_derivative) {
   Tree<> tree = two_pandas(true);
   Random random(6);
   tree.base = {3.0, random.uniform(3, -0.3, 0.3)};
-  for (auto& each : tree.joints) each.moved = {random.uniform(0.1, 4.0), random.uniform(3, -0.2, 0.2)};
+  for (auto& each : tree.joints) each.joint.moved = {random.uniform(0.1, 4.0), random.uniform(3, -0.2, 0.2)};
   tree.joints[5].joint.type = JointType::kPrismatic;
   expect_derivatives_of_relative_tasks<16, 16>(tree);
   tree.joints[7].joint.mimic = {3, -0.7, 0.2};

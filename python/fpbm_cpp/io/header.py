@@ -69,7 +69,7 @@ def export_tree(robot: Robot, *, name: str, source: str = "", scalar: str = "dou
     for i, each in enumerate(robot.joints):
         parts.append(_joint_lines(f"  tree.joints[{i}].joint", each.joint, scalar))
         parts[-1].append(f"  tree.joints[{i}].parent = {each.parent};")
-        parts[-1] += _mass_lines(f"  tree.joints[{i}].moved", each.mass, each.center, scalar)
+        parts[-1] += _mass_lines(f"  tree.joints[{i}].joint.moved", each.mass, each.center, scalar)
     for i, frame in enumerate(robot.named_frames):
         member = f"  tree.frames[{i}]"
         parts.append([f"{member}.name = {_literal(frame.name)};", f"{member}.link = {frame.link};"])

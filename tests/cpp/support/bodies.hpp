@@ -18,7 +18,7 @@ namespace fpbm::test {
     if (link == 0 || (!is_last && !(end.norm() > 0.01))) return;
     capsules.push_back({link, {Vector<3>::Zero(), end, radius}, "link" + std::to_string(link)});
   };
-  for (const auto& [joint, parent, moved] : tree.joints) add(parent, joint.placement.p, false);
+  for (const auto& [joint, parent] : tree.joints) add(parent, joint.placement.p, false);
   for (const auto& [name, link, offset] : tree.frames) add(link, offset.p, true);
   return capsules;
 }

@@ -25,8 +25,8 @@ struct Chain {
   /// Conversion to a chain whose length is known at run time.
   operator Chain<Scalar>() const {
     Chain<Scalar> chain{{}, tip};
-    for (const auto& [type, placement, axis, bounds, name, mimic] : joints) {
-      chain.joints.push_back({type, placement, axis, bounds, std::string(name), mimic});
+    for (const auto& [type, placement, axis, bounds, name, mimic, moved, drive] : joints) {
+      chain.joints.push_back({type, placement, axis, bounds, std::string(name), mimic, moved, drive});
     }
     return chain;
   }
@@ -76,7 +76,7 @@ void require_transform(const validation::Argument& name, const Transform<Scalar>
 
 template <typename Scalar>
 void require_bounds(const validation::Argument& name, JointType type, const JointBounds<Scalar>& bounds) {
-  const auto& [lower, upper, velocity, acceleration, jerk, velocity_offset, deceleration] = bounds;
+  const auto& [lower, upper, velocity, acceleration, jerk, velocity_offset, deceleration, effort] = bounds;
   if (!(lower < upper)) validation::fail(name + ".lower", lower, "below upper = ", upper);
   if (type == JointType::kContinuous && (std::isfinite(lower) || std::isfinite(upper))) {
     validation::reject(name, " is continuous: must have no lower and no upper bound");
@@ -88,7 +88,15 @@ void require_bounds(const validation::Argument& name, JointType type, const Join
   require_positive(".acceleration", acceleration);
   require_positive(".jerk", jerk);
   require_positive(".deceleration", deceleration);
+  require_positive(".effort", effort);
   validation::require_non_negative(name + ".velocity_offset", velocity_offset);
+}
+
+template <typename Scalar>
+void require_inertia(const validation::Argument& name, const LinkInertia<Scalar>& inertia) {
+  validation::require_non_negative(name + ".mass", inertia.mass);
+  validation::require_finite(name + ".centre", inertia.centre);
+  for (int i = 0; i < 9; ++i) validation::require_finite(element(name + ".inertia", i), inertia.inertia.data()[i]);
 }
 
 template <typename Scalar, typename Name>
@@ -97,6 +105,10 @@ void require_joint(const validation::Argument& name, const Joint<Scalar, Name>& 
   validation::require_finite(name + ".axis", joint.axis);
   if (!(norm(joint.axis) > Scalar(0))) validation::reject(name + ".axis", " is zero: must be a nonzero vector");
   require_bounds(name, joint.type, joint.bounds);
+  require_inertia(name + ".moved", joint.moved);
+  validation::require_non_negative(name + ".drive.rotor_inertia", joint.drive.rotor_inertia);
+  validation::require_non_negative(name + ".drive.viscous", joint.drive.viscous);
+  validation::require_non_negative(name + ".drive.dry", joint.drive.dry);
 }
 
 }  // namespace chain_check

@@ -32,6 +32,7 @@ struct JointBounds {
   /// end).
   Scalar velocity_offset = 0;   ///< [rad/s] or [m/s]
   Scalar deceleration = kNone;  ///< [rad/s²] or [m/s²]
+  Scalar effort = kNone;        ///< Torque or force, in both directions [Nm] or [N].
 };
 
 /// Coupling of a joint to another joint, the leader: position = ratio · position of the leader + offset.
@@ -40,6 +41,23 @@ struct Mimic {
   int joint = -1;  ///< Index of the leader in the chain, or −1 for a joint with a drive.
   Scalar ratio = 1;
   Scalar offset = 0;  ///< [rad] or [m]
+};
+
+/// Inertia of a link, in the frame of the link.
+template <typename Scalar = double>
+struct LinkInertia {
+  Scalar mass = 0;                                               ///< [kg]
+  Vector<3, Scalar> centre = {Scalar(0), Scalar(0), Scalar(0)};  ///< Centre of mass [m].
+  /// Rotational inertia about the centre of mass, along the axes of the frame [kg m²].
+  Matrix<3, 3, Scalar> inertia = filled<Matrix<3, 3, Scalar>>(3);
+};
+
+/// Inertia and friction of the drive of a joint. The torque of the drive is M q̈ + h + viscous q̇ + dry sign(q̇).
+template <typename Scalar = double>
+struct JointDrive {
+  Scalar rotor_inertia = 0;  ///< Inertia of the rotor times the square of the gear ratio [kg m²] or [kg].
+  Scalar viscous = 0;        ///< [Nm s/rad] or [N s/m]
+  Scalar dry = 0;            ///< [Nm] or [N]
 };
 
 /// One joint of a chain. The name, for messages, is a std::string, or a std::string_view of a text that must outlive
@@ -52,6 +70,9 @@ struct Joint {
   JointBounds<Scalar> bounds = {};
   Name name = {};
   Mimic<Scalar> mimic = {};
+  LinkInertia<Scalar> moved =
+      {};  ///< The link that the joint moves. Its frame is the frame of the joint after the motion.
+  JointDrive<Scalar> drive = {};
 };
 
 /// Bounds on the motion of all joints of an arm, infinite if there is no bound.
@@ -65,6 +86,7 @@ struct JointLimits {
   /// See JointBounds. [rad/s, rad/s²] or [m/s, m/s²]
   Vector<N, Scalar> velocity_offset = filled<Vector<N, Scalar>>(acceleration.size());
   Vector<N, Scalar> deceleration = unbounded(acceleration.size());
+  Vector<N, Scalar> effort = unbounded(acceleration.size());  ///< [Nm] or [N]
   /// Bits of the continuous joints: joints that rotate without bounds, so that positions that differ by 2π are equal. A
   /// joint with a finite bound is never continuous.
   JointBits continuous = 0;
@@ -77,10 +99,9 @@ struct JointLimits {
 
   template <typename Other>
   [[nodiscard]] JointLimits<N, Other> cast() const {
-    return {lower.template cast<Other>(),        upper.template cast<Other>(),
-            velocity.template cast<Other>(),     acceleration.template cast<Other>(),
-            jerk.template cast<Other>(),         velocity_offset.template cast<Other>(),
-            deceleration.template cast<Other>(), continuous};
+    return {lower.template cast<Other>(),        upper.template cast<Other>(),  velocity.template cast<Other>(),
+            acceleration.template cast<Other>(), jerk.template cast<Other>(),   velocity_offset.template cast<Other>(),
+            deceleration.template cast<Other>(), effort.template cast<Other>(), continuous};
   }
 
   /// Sets the bounds of joint i.
@@ -92,20 +113,23 @@ struct JointLimits {
     jerk(i) = bounds.jerk;
     velocity_offset(i) = bounds.velocity_offset;
     deceleration(i) = bounds.deceleration;
+    effort(i) = bounds.effort;
   }
 
   /// The bounds of joint i.
   [[nodiscard]] JointBounds<Scalar> joint(Eigen::Index i) const noexcept {
-    return {lower(i), upper(i), velocity(i), acceleration(i), jerk(i), velocity_offset(i), deceleration(i)};
+    return {lower(i), upper(i), velocity(i), acceleration(i), jerk(i), velocity_offset(i), deceleration(i), effort(i)};
   }
 
-  /// Copy of the limits. If jerk, velocity_offset or deceleration has no entries, the copy has no bounds of this kind.
+  /// Copy of the limits. If jerk, velocity_offset, deceleration or effort has no entries, the copy has no bounds of
+  /// this kind.
   [[nodiscard]] JointLimits complete() const {
     const JointLimits given{lower, upper, velocity, acceleration};
     JointLimits all = *this;
     if (jerk.size() == 0) all.jerk = given.jerk;
     if (velocity_offset.size() == 0) all.velocity_offset = given.velocity_offset;
     if (deceleration.size() == 0) all.deceleration = given.deceleration;
+    if (effort.size() == 0) all.effort = given.effort;
     return all;
   }
 

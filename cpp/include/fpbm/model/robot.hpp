@@ -40,8 +40,8 @@ class Robot {
   explicit Robot(const Tree<Scalar, Length, Frames>& tree) : tree_(tree, require_tree(tree)), drives_(tree) {
     masses_[0] = tree.base;
     for (int link = 1; link <= joints(); ++link) {
-      const auto& [mass, centre] = tree.joints[index(link - 1)].moved;
-      masses_[index(link)] = {mass, times(tree_.end(link).R, centre)};
+      const LinkInertia<Scalar>& moved = tree.joints[index(link - 1)].joint.moved;
+      masses_[index(link)] = {moved.mass, times(tree_.end(link).R, moved.centre)};
     }
     set_length(longest_chain<Scalar>(tree));
   }

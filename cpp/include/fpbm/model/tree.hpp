@@ -16,13 +16,12 @@ struct LinkMass {
   Vector<3, Scalar> centre = {Scalar(0), Scalar(0), Scalar(0)};  ///< [m]
 };
 
-/// Joint of a tree, the link that carries the joint, and the mass of the link that the joint moves. Link 0 is the base.
-/// Joint i moves link i + 1, whose frame is the frame of the joint after the motion of the joint.
+/// Joint of a tree, and the link that carries the joint. Link 0 is the base. Joint i moves link i + 1, whose frame is
+/// the frame of the joint after the motion of the joint.
 template <typename Scalar = double, typename Name = std::string>
 struct TreeJoint {
   Joint<Scalar, Name> joint = {};  ///< Placed in the frame of the link that carries the joint.
   int parent = 0;                  ///< Number of the link that carries the joint: at most the index of the joint.
-  LinkMass<Scalar> moved = {};
 };
 
 /// A named frame of a link.
@@ -73,13 +72,11 @@ Eigen::Index require_tree(const Tree<Scalar, Joints, Frames>& tree) {
   validation::require_dof("joints", static_cast<Eigen::Index>(tree.joints.size()), 1);
   for (std::size_t i = 0; i < tree.joints.size(); ++i) {
     const validation::Argument name = chain_check::name_of(tree, static_cast<Eigen::Index>(i));
-    const auto& [joint, parent, moved] = tree.joints[i];
+    const auto& [joint, parent] = tree.joints[i];
     chain_check::require_joint(name, joint);
     if (parent < 0 || parent > static_cast<int>(i)) {
       validation::fail(name + ".parent", parent, "the number of the parent link, at most ", static_cast<int>(i));
     }
-    validation::require_non_negative(name + ".moved.mass", moved.mass);
-    validation::require_finite(name + ".moved.centre", moved.centre);
   }
   for (std::size_t i = 0; i < tree.frames.size(); ++i) {
     const auto& [frame_name, link, offset] = tree.frames[i];
@@ -98,12 +95,13 @@ template <typename Scalar>
 int add_arm(Tree<Scalar>& tree, const Chain<Scalar>& arm, const std::string& name, int link = 0,
             const Transform<Scalar>& placement = {}) {
   const auto first = static_cast<int>(tree.joints.size());
-  for (const auto& [type, placed, axis, bounds, joint_name, mimic] : arm.joints) {
+  for (const auto& [type, placed, axis, bounds, joint_name, mimic, moved, drive] : arm.joints) {
     const bool is_first = static_cast<int>(tree.joints.size()) == first;
     const Mimic<Scalar> follows{mimic.joint < 0 ? -1 : first + mimic.joint, mimic.ratio, mimic.offset};
     std::string own_name = name;
     own_name.append("_").append(joint_name);
-    tree.joints.push_back({{type, is_first ? placement * placed : placed, axis, bounds, own_name, follows}, link, {}});
+    tree.joints.push_back(
+        {{type, is_first ? placement * placed : placed, axis, bounds, own_name, follows, moved, drive}, link});
     link = static_cast<int>(tree.joints.size());
   }
   tree.frames.push_back({name + "_tip", link, arm.tip});
@@ -114,9 +112,9 @@ int add_arm(Tree<Scalar>& tree, const Chain<Scalar>& arm, const std::string& nam
 template <typename Scalar, int Length>
 [[nodiscard]] Tree<Scalar> tree_of(const Chain<Scalar, Length>& chain) {
   Tree<Scalar> tree;
-  for (const auto& [type, placement, axis, bounds, name, mimic] : chain.joints) {
+  for (const auto& [type, placement, axis, bounds, name, mimic, moved, drive] : chain.joints) {
     const int parent = static_cast<int>(tree.joints.size());
-    tree.joints.push_back({{type, placement, axis, bounds, std::string(name), mimic}, parent, {}});
+    tree.joints.push_back({{type, placement, axis, bounds, std::string(name), mimic, moved, drive}, parent});
   }
   tree.frames.push_back({"tip", static_cast<int>(tree.joints.size()), chain.tip});
   return tree;

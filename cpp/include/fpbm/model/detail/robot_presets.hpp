@@ -51,7 +51,7 @@ inline void add(Tree<>& tree, const Row& row, int parent, const std::string& sid
   each.joint.axis = row.axis;
   each.joint.bounds = {opposite ? -row.upper : row.lower, opposite ? -row.lower : row.upper, row.velocity, 20.0};
   each.parent = parent;
-  each.moved = {row.moved.mass, mirror(row.moved.centre)};
+  each.joint.moved = {row.moved.mass, mirror(row.moved.centre)};
   tree.joints.push_back(each);
 }
 
