@@ -33,18 +33,23 @@ Rows<kDynamic, AnyBounds::kRows> AnyBounds::rows(const NextMotion<kLevel, kDynam
   return all_.rows(next);
 }
 template <Level kLevel>
-bool AnyBounds::accepts(const State<kDynamic>& from, const Stop<kLevel, kDynamic>& stop) noexcept {
-  return all_.accepts(from, stop);
+bool AnyBounds::accepts(const Limits<kLevel, kDynamic>& limits, const State<kDynamic>& from,
+                        const Stop<kLevel, kDynamic>& stop) noexcept {
+  return all_.accepts(limits, from, stop);
 }
 
 template <Level kLevel>
 using NextOf = NextMotion<kLevel, kDynamic>;
 template <Level kLevel>
+using LimitsOf = Limits<kLevel, kDynamic>;
+template <Level kLevel>
 using StopOf = Stop<kLevel, kDynamic>;
 using AnyRows = Rows<kDynamic, AnyBounds::kRows>;
 template AnyRows AnyBounds::rows(const NextOf<Level::kVelocity>&) noexcept;
 template AnyRows AnyBounds::rows(const NextOf<Level::kAcceleration>&) noexcept;
-template bool AnyBounds::accepts(const State<kDynamic>&, const StopOf<Level::kVelocity>&) noexcept;
-template bool AnyBounds::accepts(const State<kDynamic>&, const StopOf<Level::kAcceleration>&) noexcept;
+template bool AnyBounds::accepts(const LimitsOf<Level::kVelocity>&, const State<kDynamic>&,
+                                 const StopOf<Level::kVelocity>&) noexcept;
+template bool AnyBounds::accepts(const LimitsOf<Level::kAcceleration>&, const State<kDynamic>&,
+                                 const StopOf<Level::kAcceleration>&) noexcept;
 
 }  // namespace fpbm::bindings

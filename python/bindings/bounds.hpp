@@ -29,15 +29,16 @@ class AnyBounds {
   [[nodiscard]] Clearance<kDynamic>& clearance() noexcept { return all_.get<Clearance<kDynamic>>(); }
 
   [[nodiscard]] bool empty() const noexcept { return all_.empty(); }
+  [[nodiscard]] double slower_stop(double fraction) const noexcept { return all_.slower_stop(fraction); }
   void require(const JointVector& q);
   template <Level kLevel>
   [[nodiscard]] Rows<kDynamic, kRows> rows(const NextMotion<kLevel, kDynamic>& next) noexcept;
   template <Level kLevel>
-  [[nodiscard]] bool accepts(const State<kDynamic>& from, const Stop<kLevel, kDynamic>& stop) noexcept;
+  [[nodiscard]] bool accepts(const Limits<kLevel, kDynamic>& limits, const State<kDynamic>& from, const Stop<kLevel, kDynamic>& stop) noexcept;
   void gaps(const JointVector& q, double range, const std::function<void(double, const JointVector&)>& f) noexcept;
   [[nodiscard]] double closeness(const JointVector& q, double range) noexcept;
   [[nodiscard]] double speed_ratio(const JointVector& q, const JointVector& qd) noexcept;
-  [[nodiscard]] Status status(std::uint32_t active) const noexcept { return all_.status(active); }
+  [[nodiscard]] Status status(std::uint64_t active) const noexcept { return all_.status(active); }
   [[nodiscard]] double near_distance_sum() const noexcept { return all_.near_distance_sum(); }
   [[nodiscard]] bool moves_away() const noexcept { return all_.moves_away(); }
   [[nodiscard]] JointVector away(const JointVector& q) noexcept;

@@ -46,8 +46,8 @@ class CableBound {
     gaps_.finish(next, motion, rows, [&](int) noexcept { return end; });
   }
   /// The gap is linear in q, so that the bound on the displacement is exact.
-  template <typename Stop_>
-  [[nodiscard]] bool accepts(const State<kOpen>& from, const Stop_& stop) const noexcept {
+  template <typename Limits_, typename Stop_>
+  [[nodiscard]] bool accepts(const Limits_&, const State<kOpen>& from, const Stop_& stop) const noexcept {
     const JointDisplacement<kOpen, double> moved(robot_.drives(), stop.displacement);
     return gap(from.q) + std::min(g_.dot(moved.line), 0.0) + moved.least(g_) >= 0.0;
   }

@@ -29,7 +29,7 @@ namespace fpbm {
 ///   empty()                    whether nothing is bounded
 ///   require(q)                 throws std::invalid_argument if the posture q violates the bound
 ///   rows(next, rows)           adds g·u ≤ b for the next motion (NextMotion), at most kRows rows
-///   accepts(from, stop)        whether the tick and the Stop after the tick keep the bound; true without a certificate
+///   accepts(limits, from, stop)  whether the tick and the Stop after the tick keep the bound; true without a certificate
 ///   gaps(q, range, f)          for InverseKinematics and kept paths: calls f(gap, gradient) for each gap below range
 ///   speed_ratio(q, qd)         for fastest() only, of a bound on speeds: largest ratio of a speed to its bound
 ///
@@ -42,7 +42,7 @@ class Bounds {
                 "a bound needs `static constexpr fpbm::Status kStatus`");
   static_assert((kHas<Each, bound_member::Empty> && ...), "a bound needs `bool empty() const noexcept`");
   static constexpr int kRows = (0 + ... + Each::kRows);
-  static_assert(kRows <= 32, "at most 32 rows: the active rows are the bits of a std::uint32_t");
+  static_assert(kRows <= 64, "at most 64 rows: the active rows are the bits of a std::uint64_t");
 
   Bounds() = default;
   template <typename First, typename... More,
@@ -63,6 +63,19 @@ class Bounds {
 
   [[nodiscard]] bool empty() const noexcept {
     return std::apply([](const auto&... bound) { return (bound.empty() && ...); }, each_);
+  }
+
+  /// After a stop was refused: a smaller fraction of the bounds on deceleration with which a bound may accept a stop,
+  /// or 0.
+  template <typename Scalar>
+  [[nodiscard]] Scalar slower_stop(Scalar fraction) const noexcept {
+    Scalar slower(0);
+    each([&](const auto& bound) noexcept {
+      if constexpr (kHas<std::decay_t<decltype(bound)>, bound_member::SlowerStop, Scalar>) {
+        if (!bound.empty()) slower = std::max(slower, bound.slower_stop(fraction));
+      }
+    });
+    return slower;
   }
 
   template <typename JointVector>
@@ -91,7 +104,7 @@ class Bounds {
   }
 
   /// Status of a tick that rows slow down. active: bit k is set if row k acts.
-  [[nodiscard]] Status status([[maybe_unused]] std::uint32_t active) const noexcept {
+  [[nodiscard]] Status status([[maybe_unused]] std::uint64_t active) const noexcept {
     Status status = Status::kSlowed;
     std::size_t i = 0;
     Eigen::Index k = 0;
@@ -105,11 +118,14 @@ class Bounds {
   }
 
   template <Level kLevel, int N, typename Scalar>
-  [[nodiscard]] bool accepts(const State<N, Scalar>& from, const Stop<kLevel, N, Scalar>& stop) noexcept {
+  [[nodiscard]] bool accepts(const Limits<kLevel, N, Scalar>& limits, const State<N, Scalar>& from,
+                             const Stop<kLevel, N, Scalar>& stop) noexcept {
     static_assert(
-        (kHas<Each, bound_member::Accepts, State<N, Scalar>, Stop<kLevel, N, Scalar>> && ...),
-        "a bound needs `bool accepts(const State<N, Scalar>& from, const Stop<kLevel, N, Scalar>& stop) noexcept`");
-    return std::apply([&](auto&... bound) noexcept { return ((bound.empty() || bound.accepts(from, stop)) && ...); },
+        (kHas<Each, bound_member::Accepts, Limits<kLevel, N, Scalar>, State<N, Scalar>, Stop<kLevel, N, Scalar>> &&
+         ...),
+        "a bound needs `bool accepts(const Limits<kLevel, N, Scalar>& limits, const State<N, Scalar>& from, const "
+        "Stop<kLevel, N, Scalar>& stop) noexcept`");
+    return std::apply([&](auto&... bound) noexcept { return ((bound.empty() || bound.accepts(limits, from, stop)) && ...); },
                       each_);
   }
 

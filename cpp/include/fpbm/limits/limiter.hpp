@@ -107,7 +107,7 @@ class Limiter {
                                               const JointVector& last) const noexcept {
     const auto& J = first_level(tasks);
     constexpr int M = std::decay_t<decltype(J)>::RowsAtCompileTime;
-    std::uint32_t active = 0;
+    std::uint64_t active = 0;
     const auto admitted = [&](const JointVector& u) noexcept {
       RowProjection<M, N, P, Scalar> projection(J, inverse_task_metric(J, rows, u), rows);
       const JointVector nearest = projection(u);

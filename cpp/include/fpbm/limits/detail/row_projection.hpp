@@ -62,9 +62,9 @@ class RowProjection {
   }
 
   /// Bit k is set if row k is active.
-  [[nodiscard]] std::uint32_t active() const noexcept {
-    std::uint32_t bits = 0;
-    for (Eigen::Index j = 0; j < count_; ++j) bits |= std::uint32_t(1) << active_[j];
+  [[nodiscard]] std::uint64_t active() const noexcept {
+    std::uint64_t bits = 0;
+    for (Eigen::Index j = 0; j < count_; ++j) bits |= std::uint64_t(1) << active_[j];
     return bits;
   }
 

@@ -171,7 +171,7 @@ class NullSpaceSaturation {
 
   static void count(SaturatedMotion<N, Scalar>& result, Eigen::Index held, Eigen::Index joints) noexcept {
     if (held < joints) result.joints |= joint_bit(held);
-    if (held >= joints) result.rows |= std::uint32_t(1) << (held - joints);
+    if (held >= joints) result.rows |= std::uint64_t(1) << (held - joints);
   }
 
   Basis Z_;  ///< Basis of the null space in the units of the joints.

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "fpbm/core/types.hpp"
+#include "fpbm/limits/detail/box.hpp"
 
 namespace fpbm {
 
@@ -50,6 +52,30 @@ struct StopProfile {
     const Scalar at = k - wait;
     if (!(Scalar(0) <= at && at < brake)) return Scalar(0);
     return std::min({at + Scalar(1), ramp, brake - at}) / (ramp * (brake - ramp + Scalar(1)));
+  }
+
+  /// Smallest and largest removed_fraction() of the ticks from k to `last`, which has k ≤ last.
+  [[nodiscard]] Interval<Scalar> removed_fractions(Scalar k, Scalar last) const noexcept {
+    const Scalar middle = wait + std::floor(brake / Scalar(2));
+    return {std::min(removed_fraction(k), removed_fraction(last)),
+            removed_fraction(std::min(std::max(middle, k), last))};
+  }
+
+  /// Fraction of the velocity that remains after k ticks, and the distance in these ticks, in ticks at the velocity v:
+  /// sums of removed_fraction(), which are symmetric in time.
+  [[nodiscard]] std::pair<Scalar, Scalar> after(Scalar k) const noexcept {
+    const Scalar sum = brake - ramp + Scalar(1);
+    const Scalar m = std::min(k - wait, brake);
+    if (!(m > Scalar(0)) || !(sum > Scalar(0))) return {Scalar(m < brake), std::min(k, wait)};
+    const bool late = m + m > brake;
+    const Scalar j = late ? brake - m : m;
+    const Scalar p = std::min(j, ramp);
+    const Scalar even = j - p;
+    const Scalar removed = (p * (p + Scalar(1)) / (Scalar(2) * ramp) + even) / sum;
+    const Scalar area = (p * (p + Scalar(1)) * (Scalar(2) * p + Scalar(1)) / (Scalar(12) * ramp) +
+                         even * (ramp + Scalar(1) + even) / Scalar(2)) /
+                        sum;
+    return late ? std::pair(removed, wait + brake / Scalar(2) - area) : std::pair(Scalar(1) - removed, wait + m - area);
   }
 
   [[nodiscard]] Scalar ticks() const noexcept { return wait + brake; }

@@ -11,6 +11,7 @@ namespace fpbm {
 template <typename TrackerState>
 [[nodiscard]] typename TrackerState::JointState prove(TrackerState& state, const typename TrackerState::JointVector& u,
                                                       typename TrackerState::Result& result) noexcept {
+  using Scalar = typename TrackerState::Scalar;
   using JointVector = typename TrackerState::JointVector;
   using PlannedStop = std::decay_t<decltype(state.stop)>;
   const auto& tick = state.tick;
@@ -18,18 +19,24 @@ template <typename TrackerState>
   if constexpr (TrackerState::kBounded) {
     const bool braking = state.brakes(result.status);
     if (state.bounds.empty()) return next;
-    if (!braking) {
+    auto plan = state.stop.plan;
+    const JointVector qdd = plan.next(state.limits(), tick.joints, tick.last);
+    const JointVector slower = TrackerState::kLevel == Level::kAcceleration ? qdd : JointVector(tick.joints.qd + state.dt() * qdd);
+    for (Scalar part(1); !braking && part > Scalar(0.05); part /= Scalar(2)) {
+      if (part < Scalar(1)) next = tick.after(JointVector(slower + part * (u - slower)));
       const JointVector last = (next.qd - tick.joints.qd) / state.dt();
-      const auto stop = PlannedStop::after(state.limits(), tick.joints, next, last);
-      if (state.bounds.accepts(tick.joints, stop)) {
-        state.stop = stop;
-        return next;
+      for (Scalar fraction(1); fraction > Scalar(0); fraction = state.bounds.slower_stop(fraction)) {
+        const auto stop = PlannedStop::after(state.limits(), tick.joints, next, last, fraction);
+        if (state.bounds.accepts(state.limits(), tick.joints, stop)) {
+          state.stop = stop;
+          if (part < Scalar(1)) { multiply_scale(result, part); result.status = Status::kSlowed; }
+          return next;
+        }
       }
     }
-    const JointVector qdd = state.stop.plan.next(state.limits(), tick.joints, tick.last);
-    next =
-        tick.after(TrackerState::kLevel == Level::kAcceleration ? qdd : JointVector(tick.joints.qd + state.dt() * qdd));
-    multiply_scale(result, typename TrackerState::Scalar(0));
+    state.stop.plan = plan;
+    next = tick.after(slower);
+    multiply_scale(result, Scalar(0));
     if (!braking) result.status = Status::kBlocked;
   }
   return next;

@@ -142,7 +142,7 @@ struct TrackerState {
                        "0 before a start outside the limits with bounds: stop the arm first");
     }
     stop = Stop<kLevel, N, Scalar>::after(limits(), start, start, last);
-    if (!bounds.accepts(start, stop)) {
+    if (!bounds.accepts(limits(), start, stop)) {
       validation::reject("qd0", ": is too fast: must be slow enough for the arm to stop within all bounds");
     }
   }
