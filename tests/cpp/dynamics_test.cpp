@@ -26,7 +26,7 @@ using OpenMatrix = Matrix<kOpen, kOpen>;
   return {random.uniform(3, -0.4, 0.4), rotation(Vector<3>(random.uniform(3, -1.5, 1.5)))};
 }
 
-/// Physical inertia: that of eight random point masses.
+/// Inertia of eight random point masses.
 [[nodiscard]] LinkInertia<> random_inertia(Random& random) {
   LinkInertia<> link;
   for (int i = 0; i < 8; ++i) {

@@ -67,8 +67,8 @@ class Dynamics {
   /// be called in a control loop: no heap allocation.
   ///
   /// link: 1 to Robot::joints(), or Robot::kTip for a chain. load: inertia of the payload in a frame of the link.
-  /// offset: this frame in the frame of the link, or of the tip. Returns false, without effect, if there is no such
-  /// link, or the inertia is not physical (see the constructor).
+  /// offset: this frame in the frame of the link, or of the tip. Returns false, without effect, if the link does not
+  /// exist, or the inertia is not physical (see the constructor).
   bool set_payload(int link, const LinkInertia<Scalar>& load, const Transform<Scalar>& offset = {}) noexcept {
     const int number = link == Robot_::kTip ? tip_link_ : link;
     if (number < 1 || number > robot_.joints()) return false;
