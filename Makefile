@@ -17,7 +17,7 @@ BENCHMARK := /usr/include/benchmark/benchmark.h:libbenchmark-dev
 CXX_SOURCES = $(shell find cpp python tests bench examples web ros2 -name '*.[ch]pp')
 
 .DELETE_ON_ERROR:
-.PHONY: help demo page test homes test-cpp test-python test-docs test-view clang sanitize nightly arm64 arm64-wheel windows macos cross firmware packages fuzz soak motions grasp inverse fastest peers lint \
+.PHONY: help demo page test homes test-cpp test-python test-docs test-view clang sanitize nightly arm64 arm64-wheel windows macos cross firmware packages fuzz soak motions grasp inverse fastest dynamics peers lint \
         prose format stubs docs notebooks bench count stalls worst sdist wheel clean
 
 help:
@@ -39,6 +39,7 @@ help:
 	@echo 'make grasp            10,000 motions of a tray in two arms, and a few by Pink, Mink, PlaCo and roboplan'
 	@echo 'make inverse          inverse kinematics: solved poses and times, compared with other libraries'
 	@echo 'make fastest          motions in the least time: bounds, distance from the path, comparison with TOPP-RA'
+	@echo 'make dynamics         dynamics: errors relative to Pinocchio, and times'
 	@echo 'make peers            the programs of docs/coming_from.md, in environments of their own'
 	@echo 'make fuzz             look for input that breaks the tracker, for SECONDS=$(SECONDS)'
 	@echo 'make lint             formatting, static analysis, imports, types, stubs, spelling, terms to avoid'
@@ -173,6 +174,14 @@ inverse: $(VENV)/package $(VENV)/test $(VENV)/peers
 fastest: $(VENV)/package $(VENV)/test
 	$(BIN)/python -m pip install --quiet --no-compile --group toppra
 	$(BIN)/python bench/fastest.py --count 170
+
+# The tables of docs/dynamics.md: robots from URDF files and random trees, compared with Pinocchio.
+dynamics: $(VENV)/peers $(VENV)/bench
+	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN)
+	cmake --preset bench -DFPBM_PINOCCHIO="$$(echo $(CURDIR)/$(VENV)/lib/python*/site-packages/cmeel.prefix)"
+	cmake --build --preset bench --target bench_dynamics
+	build/bench/bench/bench_dynamics $(VENV)/lib/python*/site-packages/cmeel.prefix/share/example-robot-data/robots \
+	  $(VENV)/lib/python*/site-packages/ManipulaPy/ManipulaPy_data
 
 # Programs of other libraries, compared with programs of this library. Each library is installed into build/stack_peers.
 peers: $(VENV)/package $(VENV)/test

@@ -8,9 +8,9 @@
 #include "fpbm/path/detail/point.hpp"
 #include "fpbm/path/detail/rounding_compensation.hpp"
 #include "fpbm/path/reference.hpp"
+#include "fpbm/target/detail/stamp_clock.hpp"
 #include "fpbm/target/detail/target_axes.hpp"
 #include "fpbm/target/detail/target_bounds.hpp"
-#include "fpbm/target/stamp_clock.hpp"
 #include "fpbm/target/streamed_target.hpp"
 
 namespace fpbm {
