@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "fpbm/bound/detail/bound_members.hpp"
+#include "fpbm/bound/detail/bound_tuple.hpp"
 #include "fpbm/bound/detail/next_motion.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/limits/detail/rows.hpp"
@@ -24,42 +25,33 @@ namespace fpbm {
 ///
 /// A bound of your own has these members (docs/architecture.md, "Add a bound"):
 ///
-///   kRows                      largest number of rows
-///   kStatus                    status of a tick that the rows slow down: Status::kBlocked or Status::kSlowed
-///   empty()                    whether nothing is bounded
-///   require(q)                 throws std::invalid_argument if the posture q violates the bound
-///   rows(next, rows)           adds g·u ≤ b for the next motion (NextMotion), at most kRows rows
-///   accepts(limits, from, stop)  whether the tick and the Stop after the tick keep the bound; true without a certificate
-///   gaps(q, range, f)          for InverseKinematics and kept paths: calls f(gap, gradient) for each gap below range
-///   speed_ratio(q, qd)         for fastest() only, of a bound on speeds: largest ratio of a speed to its bound
+///   kRows                 largest number of rows
+///   kStatus               status of a tick that the rows slow down: Status::kBlocked or Status::kSlowed
+///   empty()               whether nothing is bounded
+///   require(q)            throws std::invalid_argument if the posture q violates the bound
+///   rows(next, rows)      adds g·u ≤ b for the next motion (NextMotion), at most kRows rows
+///   accepts(limits, from, stop)
+///                         whether the tick and the Stop after the tick keep the bound; true without a certificate
+///   gaps(q, range, f)     for InverseKinematics and kept paths: calls f(gap, gradient) for each gap below range
+///   speed_ratio(q, qd)    for fastest() only, of a bound on speeds: largest ratio of a speed to its bound
+///   slower_stop(fraction), require_limits(limits)
+///                         of TorqueBounds
 ///
 /// rows() and accepts() are noexcept, and rows() is called before accepts(). A bound allocates at construction only.
 template <typename... Each>
-class Bounds {
+class Bounds : public BoundTuple<Each...> {
  public:
-  static_assert((kHas<Each, bound_member::RowCount> && ...), "a bound needs `static constexpr int kRows`");
-  static_assert((kHas<Each, bound_member::StatusOfRows> && ...),
-                "a bound needs `static constexpr fpbm::Status kStatus`");
-  static_assert((kHas<Each, bound_member::Empty> && ...), "a bound needs `bool empty() const noexcept`");
   static constexpr int kRows = (0 + ... + Each::kRows);
   static_assert(kRows <= 64, "at most 64 rows: the active rows are the bits of a std::uint64_t");
 
   Bounds() = default;
+  using BoundTuple<Each...>::get;
   template <typename First, typename... More,
             typename = std::enable_if_t<
                 sizeof...(More) + 1 == sizeof...(Each) &&
                 std::is_same_v<std::tuple<std::decay_t<First>, std::decay_t<More>...>, std::tuple<Each...>>>>
-  explicit Bounds(First&& first, More&&... more) : each_(std::forward<First>(first), std::forward<More>(more)...) {}
-
-  /// The bound of a type, for example the Clearance, whose obstacles can move.
-  template <typename Bound>
-  [[nodiscard]] Bound& get() noexcept {
-    return std::get<Bound>(each_);
-  }
-  template <typename Bound>
-  [[nodiscard]] const Bound& get() const noexcept {
-    return std::get<Bound>(each_);
-  }
+  explicit Bounds(First&& first, More&&... more)
+      : BoundTuple<Each...>(std::forward<First>(first), std::forward<More>(more)...) {}
 
   [[nodiscard]] bool empty() const noexcept {
     return std::apply([](const auto&... bound) { return (bound.empty() && ...); }, each_);
@@ -83,6 +75,17 @@ class Bounds {
     static_assert((kHas<Each, bound_member::Require, JointVector> && ...),
                   "a bound needs `void require(const JointVector& q)`");
     std::apply([&](auto&... bound) { (bound.require(q), ...); }, each_);
+  }
+
+  /// Throws std::invalid_argument if the bounds do not suit the level or the limits of a motion.
+  template <Level kLevel, int N, typename Scalar>
+  void require_limits(const Limits<kLevel, N, Scalar>& limits) const {
+    const auto require = [&](const auto& bound) {
+      if constexpr (kHas<std::decay_t<decltype(bound)>, bound_member::RequireLimits, Limits<kLevel, N, Scalar>>) {
+        if (!bound.empty()) bound.require_limits(limits);
+      }
+    };
+    std::apply([&](const auto&... bound) { (require(bound), ...); }, each_);
   }
 
   /// Rows on the next motion.
@@ -125,8 +128,8 @@ class Bounds {
          ...),
         "a bound needs `bool accepts(const Limits<kLevel, N, Scalar>& limits, const State<N, Scalar>& from, const "
         "Stop<kLevel, N, Scalar>& stop) noexcept`");
-    return std::apply([&](auto&... bound) noexcept { return ((bound.empty() || bound.accepts(limits, from, stop)) && ...); },
-                      each_);
+    return std::apply(
+        [&](auto&... bound) noexcept { return ((bound.empty() || bound.accepts(limits, from, stop)) && ...); }, each_);
   }
 
   /// Calls f(gap, gradient) for each gap below the range in the posture q. The posture keeps all bounds if no gap is
@@ -168,10 +171,11 @@ class Bounds {
 
   /// Sum of the distances to near shapes [m]. While the arm is at rest, the sum changes only if obstacles move.
   [[nodiscard]] auto near_distance_sum() const noexcept {
-    return (0.0 + ... + of_shapes<Each>([](const auto& bound) { return bound.near_distance_sum(); }, 0.0));
+    return (0.0 + ... +
+            this->template of_shapes<Each>([](const auto& bound) { return bound.near_distance_sum(); }, 0.0));
   }
   [[nodiscard]] bool moves_away() const noexcept {
-    return (of_shapes<Each>([](const auto& bound) { return bound.moves_away(); }, false) || ...);
+    return (this->template of_shapes<Each>([](const auto& bound) { return bound.moves_away(); }, false) || ...);
   }
   /// Null-space motion away from shapes in the posture q [rad/s², or rad/s at velocity level].
   template <typename JointVector>
@@ -186,27 +190,9 @@ class Bounds {
   }
 
  private:
-  /// Calls f(bound) for each bound.
-  template <typename F>
-  void each(F&& f) noexcept {
-    std::apply([&](auto&... bound) noexcept { (f(bound), ...); }, each_);
-  }
-  template <typename F>
-  void each(F&& f) const noexcept {
-    std::apply([&](const auto&... bound) noexcept { (f(bound), ...); }, each_);
-  }
+  using BoundTuple<Each...>::each;
+  using BoundTuple<Each...>::each_;
 
-  /// f(bound) of a bound that knows shapes; `other` for any other bound.
-  template <typename Bound, typename F, typename Other>
-  [[nodiscard]] auto of_shapes([[maybe_unused]] const F& f, [[maybe_unused]] Other other) const noexcept {
-    if constexpr (kHas<Bound, bound_member::MovesAway>) {
-      return f(get<Bound>());
-    } else {
-      return other;
-    }
-  }
-
-  std::tuple<Each...> each_;
   std::array<Eigen::Index, sizeof...(Each)> ends_{};  ///< Number of rows after each bound.
 };
 

@@ -63,7 +63,8 @@ class Clearance : public Shapes<N, Scalar_, Joints> {
   }
 
   template <Level kLevel>
-  [[nodiscard]] bool accepts(const Limits<kLevel, N, Scalar>&, const State<N, Scalar>&, const Stop<kLevel, N, Scalar>& stop) noexcept {
+  [[nodiscard]] bool accepts(const Limits<kLevel, N, Scalar>&, const State<N, Scalar>&,
+                             const Stop<kLevel, N, Scalar>& stop) noexcept {
     if (advancement_.keeps_margins(*this, near_, stop.displacement, stop.time)) return true;
     return this->moves() && advancement_.keeps_margins(*this, near_, stop.displacement, stop.time, Pairs::kStatic);
   }

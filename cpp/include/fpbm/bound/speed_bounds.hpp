@@ -74,7 +74,8 @@ class SpeedBounds {
   void gaps(const JointVector&, Scalar, const F&) const noexcept {}
 
   template <Level kLevel>
-  [[nodiscard]] static bool accepts(const Limits<kLevel, N, Scalar>&, const State<N, Scalar>&, const Stop<kLevel, N, Scalar>&) noexcept {
+  [[nodiscard]] static bool accepts(const Limits<kLevel, N, Scalar>&, const State<N, Scalar>&,
+                                    const Stop<kLevel, N, Scalar>&) noexcept {
     return true;
   }
 

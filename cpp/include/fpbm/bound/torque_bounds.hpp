@@ -2,180 +2,195 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "fpbm/bound/bounds.hpp"
-#include "fpbm/bound/detail/torque_deviation.hpp"
+#include "fpbm/bound/detail/gravity_gradient.hpp"
+#include "fpbm/bound/detail/torque_certificate.hpp"
 #include "fpbm/model/dynamics.hpp"
 
 namespace fpbm {
 
-/// Bound of a Tracker at acceleration level: |τ_i| ≤ effort_i for the torques of inverse dynamics, at the start and at
-/// the end of every tick (docs/torques.md).
+/// Bound of a Tracker at acceleration level: |τ_i| ≤ effort_i at the start and at the end of every tick, for the
+/// torques τ = M q̈ + h of inverse dynamics (docs/torques.md).
 ///
-/// A tick is accepted only if the torques of the whole stopping trajectory after the tick are proved to keep the bound.
-/// The torques are evaluated at a few moments. Between two evaluations, TorqueDeviation bounds the torques.
+/// A tick is accepted only if the torques keep the bounds until the arm is at rest (TorqueCertificate). If a stop with
+/// the full deceleration exceeds a bound, a slower stop is planned (slower_stop()). Dry friction is unknown at rest:
+/// the bounds on the torque of inverse dynamics are the efforts minus the dry friction.
 template <int N, typename Scalar_ = double, int Joints = N>
 class TorqueBounds {
  public:
   using Scalar = Scalar_;
   using JointVector = Vector<N, Scalar>;
-  using JointMatrix = Matrix<N, N, Scalar>;
   using Model = Dynamics<N, Scalar, Joints>;
+  /// Two for each joint. For robots of more joints, the rows are of the first joints, from the base on.
   static constexpr int kRows = N == Eigen::Dynamic || N > 8 ? 16 : 2 * N;
   static constexpr Status kStatus = Status::kSlowed;
 
-  /// source: the Tree or the Chain of the robot. effort: bounds [Nm] or [N], infinite if there is no bound.
+  /// source: the Tree or the Chain of the robot. effort: bounds [Nm] or [N], infinite if there is no bound. lighter: if
+  /// the mass of the payload is between two values, the model with the smaller mass; the torques of both models, and so
+  /// of all models between them, keep the bounds. Throws std::invalid_argument if an effort is not greater than the dry
+  /// friction, a drive moves no mass, or a lever is infinite.
   template <typename Source>
-  TorqueBounds(const Source& source, const JointVector& effort)
-      : model_(source), deviation_(source, model_), effort_(effort) {
-    validation::require_size("effort", effort.size(), model_.dof());
+  TorqueBounds(const Source& source, const Model& model, const JointVector& effort,
+               const std::optional<Model>& lighter = {})
+      : models_(models_of(model, lighter)), effort_(effort), most_(effort), certificate_(source, models_) {
+    validation::require_size("effort", effort.size(), model.dof());
+    require_inertia(source);
+    JointVector dry = filled<JointVector>(effort.size());
+    for (std::size_t i = 0; i < source.joints.size(); ++i) {
+      auto of_joint = filled<Vector<Joints, Scalar>>(model.robot().joints());
+      of_joint(static_cast<Eigen::Index>(i)) = joint_of(source, static_cast<Eigen::Index>(i)).drive.dry;
+      const JointVector of_drives = model.robot().drives().by_drive(of_joint);
+      for (Eigen::Index k = 0; k < dry.size(); ++k) dry(k) += std::abs(of_drives(k));
+    }
+    for (std::size_t i = 0; i < source.joints.size(); ++i) {
+      const auto& joint = joint_of(source, static_cast<Eigen::Index>(i));
+      if (joint.mimic.joint < 0) names_.push_back(chain_check::name_of(source, static_cast<Eigen::Index>(i)).text());
+    }
+    for (Eigen::Index i = 0; i < effort.size(); ++i) {
+      if (!(effort(i) > dry(i))) {
+        validation::fail(validation::element("effort", i), effort(i), "greater than the dry friction of ",
+                         names_[static_cast<std::size_t>(i)], " = ", dry(i));
+      }
+      most_(i) -= dry(i);
+    }
   }
 
-  [[nodiscard]] const Model& model() const noexcept { return model_; }
   [[nodiscard]] bool empty() const noexcept {
     for (Eigen::Index i = 0; i < effort_.size(); ++i) {
-      if (std::isfinite(effort_(i))) return false;
+      if (std::isfinite(effort_.coeff(i))) return false;
     }
     return true;
   }
+  [[nodiscard]] const Model& model() const noexcept { return models_.back(); }
+  [[nodiscard]] const JointVector& effort() const noexcept { return effort_; }
 
-  /// Throws std::invalid_argument if the arm cannot hold the posture q.
+  /// Throws std::invalid_argument unless the motion is at acceleration level with bounds on all accelerations.
+  template <Level kLevel>
+  void require_limits(const Limits<kLevel, N, Scalar>& limits) const {
+    if (kLevel == Level::kVelocity) {
+      validation::reject("torque bounds",
+                         ": must be given with a scheme at acceleration level: at velocity level, the "
+                         "torques are unknown");
+    }
+    for (Eigen::Index i = 0; i < effort_.size(); ++i) {
+      if (std::isfinite(limits.bounds().acceleration(i))) continue;
+      validation::fail(validation::element("limits.acceleration", i), limits.bounds().acceleration(i),
+                       "finite, since torques are bounded");
+    }
+  }
+
+  /// Throws std::invalid_argument with the joint, the torque and the bound if the arm cannot hold the posture q.
   void require(const JointVector& q) {
-    const JointVector g = (set(here_, {q, filled<JointVector>(q.size())}), here_.h);
-    for (Eigen::Index i = 0; i < g.size(); ++i) {
-      if (std::abs(g(i)) > effort_(i)) {
-        validation::reject(validation::element("q", i), ": the torque at rest, ", g(i), ", exceeds the bound ", effort_(i));
+    const State<N, Scalar> rest{q, filled<JointVector>(q.size())};
+    const auto& torques = certificate_.begin(models_, rest);
+    for (std::size_t k = 0; k < models_.size(); ++k) {
+      for (Eigen::Index i = 0; i < q.size(); ++i) {
+        const Scalar torque = std::abs(torques.of[k].h(i));
+        if (torque <= most_(i)) continue;
+        validation::fail(validation::Argument(names_[static_cast<std::size_t>(i)]) + ": torque at rest", torque,
+                         "at most ", most_(i), ": the arm must be able to hold its posture");
       }
     }
   }
 
+  /// Adds rows ±(M u + h)_i ≤ effort_i for joints that could exceed the bound within the bounds on acceleration, at the
+  /// start or at the predicted end of the tick.
   template <Level kLevel, int P>
-  void rows(const NextMotion<kLevel, N, Scalar>& next, Rows<N, P, Scalar>& rows) noexcept {
-    evaluations = 0;
-    set(here_, next.state);
-    const Scalar h = next.limits.tick();
-    set(there_, {JointVector(next.state.q + h * next.state.qd + h * h / Scalar(2) * next.u), JointVector(next.state.qd + h * next.u)});
-    const Eigen::Index most = rows.count + kRows;
-    const JointVector& a = next.limits.bounds().acceleration;
-    const JointVector now = here_.torque(next.u);
-    const JointVector later = there_.torque(next.u);
-    for (Eigen::Index i = 0; i < now.size(); ++i) {
-      const Scalar reach = std::abs(here_.h(i)) + here_.M.row(i).cwiseAbs().dot(a);
-      if (reach <= Scalar(0.95) * effort_(i)) continue;
-      for (const Scalar sign : {Scalar(1), Scalar(-1)}) {
-        if (rows.count == most) return;
-        const Node& node = sign * now(i) > sign * later(i) ? here_ : there_;
-        rows.g.col(rows.count) = sign * node.M.row(i).transpose();
-        rows.b(rows.count++) = (Scalar(1) - kSlack) * effort_(i) - sign * node.h(i);
+  void rows([[maybe_unused]] const NextMotion<kLevel, N, Scalar>& next,
+            [[maybe_unused]] Rows<N, P, Scalar>& rows) noexcept {
+    if constexpr (kLevel == Level::kAcceleration) {
+      const Scalar h = next.limits.tick();
+      const auto& u = next.u;
+      const auto& now = certificate_.begin(models_, next.state);
+      State<N, Scalar> end = next.state;
+      for (Eigen::Index i = 0; i < u.size(); ++i) {
+        end.q(i) += h * (end.qd(i) + h / Scalar(2) * u(i));
+        end.qd(i) += h * u(i);
+      }
+      const auto& later = certificate_.ahead(models_, end);
+      const Eigen::Index most = rows.count + kRows;
+      const JointVector& bound = next.limits.bounds().acceleration;
+      for (std::size_t k = 0; k < models_.size(); ++k) {
+        const JointVector first = now.of[k](u);
+        const JointVector last = later.of[k](u);
+        for (Eigen::Index i = 0; i < u.size(); ++i) {
+          const Scalar reach = std::abs(now.of[k].h(i)) + sum_over(u, [&](Eigen::Index j) {
+                                 return std::abs(now.of[k].M.coeff(i, j)) * bound.coeff(j);
+                               });
+          if (!(reach > kNear * most_(i))) continue;
+          for (const Scalar sign : {Scalar(1), Scalar(-1)}) {
+            if (rows.count == most) return;
+            const auto& torque = (sign * first(i) > sign * last(i) ? now : later).of[k];
+            for (Eigen::Index j = 0; j < u.size(); ++j) rows.g(j, rows.count) = sign * torque.M(i, j);
+            rows.b(rows.count++) = (Scalar(1) - kSlack) * most_(i) - sign * torque.h(i);
+          }
+        }
       }
     }
   }
 
   template <Level kLevel>
-  [[nodiscard]] bool accepts(const Limits<kLevel, N, Scalar>& limits, const State<N, Scalar>& from,
-                             const Stop<kLevel, N, Scalar>& stop) noexcept {
-    admitted_ = Scalar(0);
-    if (!is_finite(stop.start.qd)) return false;
-    const JointVector& u = stop.plan.last();
-    set(here_, from);
-    if (!within(here_.torque(u), filled<JointVector>(u.size()))) {kinds[0]++; return false;}
-    set(there_, stop.start);
-    if (!within(there_.torque(u), filled<JointVector>(u.size()))) {kinds[1]++;return false;}
-    auto plan = stop.plan;
-    StopPart<N, Scalar> part;
-    Node* start = &there_;
-    Node* end = &next_;
-    JointVector last = u;
-    const Scalar h = limits.tick();
-    while (plan.ticks_left() > Scalar(0)) {
-      Scalar ticks = std::min(plan.phase_ticks(), plan.ticks_left());
-      for (;;) {
-        auto ahead = plan;
-        part.state = start->state;
-        part.last = last;
-        part.speed = last;
-        ahead.advance(limits, ticks, part);
-        part.turned = deviation_.turned(plan.velocity(), part.along);
-        const JointVector middle = (part.low + part.high) / Scalar(2);
-        const JointVector half = (part.high - part.low) / Scalar(2);
-        const JointVector deviation = ticks > Scalar(1) ? deviation_.of(part, ticks * h) : filled<JointVector>(u.size());
-        const auto keeps = [&](const Node& node) {
-          return within(node.torque(middle), node.spread(half) + deviation);
-        };
-        if (keeps(*start)) {
-          if (++evaluations > 60) { ++stats[0]; if (part.along == Scalar(0)) ++stats[1]; return false; }
-          set(*end, part.state);
-          if (!within(end->torque(part.last), filled<JointVector>(u.size()))) {
-            admitted_ = admitted(*end, part.last);
-            ++stats[2]; kinds[admitted_>0?2:3]++; return false;
-          }
-          if (keeps(*end)) {
-            std::swap(start, end);
-            plan = ahead;
-            last = part.last;
-            break;
-          }
-        }
-        if (!(ticks > Scalar(1))) {
-          ++stats[2]; if (part.along == Scalar(0)) ++stats[3];
-          admitted_ = admitted(*start, middle); kinds[admitted_>0?4:5]++;
-          return false;
-        }
-        ticks = std::floor(ticks / Scalar(2));
+  [[nodiscard]] bool accepts([[maybe_unused]] const Limits<kLevel, N, Scalar>& limits,
+                             [[maybe_unused]] const State<N, Scalar>& from,
+                             [[maybe_unused]] const Stop<kLevel, N, Scalar>& stop) noexcept {
+    if constexpr (kLevel == Level::kAcceleration) {
+      return certificate_.keeps(models_, most_, limits, from, stop);
+    } else {
+      return true;
+    }
+  }
+
+  /// Fraction of the bounds on deceleration for the next attempt after a refused stop with `fraction`, or 0.
+  [[nodiscard]] Scalar slower_stop(Scalar fraction) const noexcept {
+    const Scalar slower = fraction * std::min(kCautious * certificate_.kept_fraction(), kLeastDecrease);
+    return slower > kSlowest ? slower : Scalar(0);
+  }
+
+  /// Calls f(gap, gradient) for each joint whose gap 1 − |g_i|/effort_i, the free part of the bound at rest, is below
+  /// the range.
+  template <typename F>
+  void gaps(const JointVector& q, Scalar range, const F& f) noexcept {
+    typename Model::State state;
+    models_[0].robot().update(q, state);
+    for (const Model& model : models_) {
+      const JointVector g = model.gravity_torque(state);
+      const Matrix<N, N, Scalar> gradient = gravity_gradient(model, state);
+      for (Eigen::Index i = 0; i < q.size(); ++i) {
+        const Scalar gap = Scalar(1) - std::abs(g(i)) / most_(i);
+        if (!(gap < range)) continue;
+        const Scalar factor = (g(i) > Scalar(0) ? Scalar(-1) : Scalar(1)) / most_(i);
+        f(gap, entrywise(g, [&](Eigen::Index j) { return factor * gradient.coeff(i, j); }));
       }
     }
-    return true;
-  }
-  int evaluations = 0;
-  long stats[4] = {};
-  long kinds[8] = {};
-  [[nodiscard]] Scalar slower_stop(Scalar fraction) const noexcept {
-    const Scalar slower = fraction * std::min(Scalar(0.7) * admitted_, Scalar(0.8));
-    if (slower <= Scalar(1e-3)) const_cast<long*>(kinds)[6]++;
-    return slower > Scalar(1e-3) ? slower : Scalar(0);
   }
 
  private:
+  /// A joint needs no rows if the torque cannot exceed this fraction of the bound at the start of the tick. The torque
+  /// at the end of the tick differs by less: without this reserve, docs/torques.md has a tick that is refused.
+  static constexpr Scalar kNear = Scalar(0.95);
+  /// Fraction of the bound that the rows leave, because the end of the tick depends on u.
   static constexpr Scalar kSlack = Scalar(0.002);
-  struct Node {
-    State<N, Scalar> state;
-    JointVector h;
-    JointMatrix M;
-    [[nodiscard]] JointVector torque(const JointVector& u) const noexcept { return h + M * u; }
-    [[nodiscard]] JointVector spread(const JointVector& half) const noexcept { return M.cwiseAbs() * half; }
-  };
+  /// A slower stop has this fraction of the deceleration that would keep the bound, because the stop takes longer and
+  /// ends in another posture (bench/torque.py).
+  static constexpr Scalar kCautious = Scalar(0.7);
+  static constexpr Scalar kLeastDecrease = Scalar(0.8);
+  /// Slower stops are not planned.
+  static constexpr Scalar kSlowest = Scalar(0.02);
 
-  /// Largest fraction of the accelerations u with which the torques keep the bound.
-  [[nodiscard]] Scalar admitted(const Node& node, const JointVector& u) const noexcept {
-    const JointVector t = node.M * u;
-    Scalar fraction(1);
-    for (Eigen::Index i = 0; i < u.size(); ++i) {
-      const Scalar slack = effort_(i) - (t(i) > Scalar(0) ? node.h(i) : -node.h(i));
-      if (std::abs(t(i)) * fraction > slack) fraction = slack > Scalar(0) ? slack / std::abs(t(i)) : Scalar(0);
-    }
-    return fraction;
-  }
-  void set(Node& node, const State<N, Scalar>& state) noexcept {
-    if (node.state.q.size() == state.q.size() && node.state.q == state.q && node.state.qd == state.qd) return;
-    node.state = state;
-    model_.robot().update(state.q, state.qd, robot_state_);
-    node.h = model_.bias(robot_state_);
-    node.M = model_.mass_matrix(robot_state_);
-  }
-  [[nodiscard]] bool within(const JointVector& torque, const JointVector& more) const noexcept {
-    for (Eigen::Index i = 0; i < torque.size(); ++i) {
-      if (!(std::abs(torque(i)) + more(i) <= effort_(i))) return false;
-    }
-    return true;
+  [[nodiscard]] static std::vector<Model> models_of(const Model& model, const std::optional<Model>& lighter) {
+    return lighter ? std::vector<Model>{*lighter, model} : std::vector<Model>{model};
   }
 
-  Model model_;
-  TorqueDeviation<N, Scalar, Joints> deviation_;
+  std::vector<Model> models_;  ///< One model, or a lighter and a heavier model.
   JointVector effort_;
-  typename Model::State robot_state_;
-  Node here_, there_, next_;
-  Scalar admitted_ = Scalar(0);
+  JointVector most_;  ///< Bounds on the torques of inverse dynamics.
+  std::vector<std::string> names_;
+  TorqueCertificate<N, Scalar, Joints> certificate_;
 };
 
 }  // namespace fpbm

@@ -17,12 +17,15 @@ using Require = decltype(std::declval<Bound&>().require(std::declval<const Joint
 template <typename Bound, typename Next, typename Rows_>
 using WriteRows = decltype(std::declval<Bound&>().rows(std::declval<const Next&>(), std::declval<Rows_&>()));
 template <typename Bound, typename Limits_, typename From, typename Stop_>
-using Accepts = decltype(bool{
-    std::declval<Bound&>().accepts(std::declval<const Limits_&>(), std::declval<const From&>(), std::declval<const Stop_&>())});
+using Accepts = decltype(bool{std::declval<Bound&>().accepts(std::declval<const Limits_&>(),
+                                                             std::declval<const From&>(),
+                                                             std::declval<const Stop_&>())});
 template <typename Bound, typename JointVector, typename F>
 using Gaps = decltype(std::declval<Bound&>().gaps(std::declval<const JointVector&>(), typename JointVector::Scalar(),
                                                   std::declval<const F&>()));
-/// Member of a bound on torques.
+/// Members of a bound on torques.
+template <typename Bound, typename Limits_>
+using RequireLimits = decltype(std::declval<const Bound&>().require_limits(std::declval<const Limits_&>()));
 template <typename Bound, typename Scalar>
 using SlowerStop = decltype(std::declval<const Bound&>().slower_stop(Scalar()));
 /// Member of a bound on speeds.

@@ -98,7 +98,8 @@ class CoordinateBounds {
 
   /// By conservative advancement, as in Advancement.
   template <Level kLevel>
-  [[nodiscard]] bool accepts(const Limits<kLevel, N, Scalar>&, const State<N, Scalar>& from, const Stop<kLevel, N, Scalar>& stop) noexcept {
+  [[nodiscard]] bool accepts(const Limits<kLevel, N, Scalar>&, const State<N, Scalar>& from,
+                             const Stop<kLevel, N, Scalar>& stop) noexcept {
     const StoppingMotion<Joints, Scalar> motion(placed_.robot.drives(), stop.displacement, stop.time);
     if (!motion.displacement.line.allFinite() || !motion.displacement.deviation.allFinite()) return false;
     Scalar done(0);

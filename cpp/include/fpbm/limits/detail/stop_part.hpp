@@ -4,27 +4,17 @@
 
 namespace fpbm {
 
-/// Part of a stopping trajectory: some ticks of a StopPlan.
+/// Some ticks of a StopPlan.
 template <int N, typename Scalar = double>
 struct StopPart {
-  State<N, Scalar> state;   ///< At the end of the part.
-  Vector<N, Scalar> last;   ///< Acceleration of the last tick.
+  State<N, Scalar> state;   ///< At the end of the part; before advance(), at its start.
+  Vector<N, Scalar> last;   ///< Accelerations of the last tick; before advance(), of the tick before the part.
   Vector<N, Scalar> low;    ///< Smallest accelerations.
   Vector<N, Scalar> high;   ///< Largest accelerations.
   Vector<N, Scalar> speed;  ///< Largest speeds.
-  /// If the joints move along their velocities after the ramp: time in which they would cover the distance of the part
-  /// at these velocities [s]. Otherwise 0.
-  Scalar along = Scalar(0);
-  Scalar turned = Scalar(0);  ///< Angle by which the links turn in this time, at most [rad].
-};
-
-/// Motion of a joint from the start of a StopPlan. v: velocity after the ramp. a: acceleration before the plan.
-template <typename Scalar>
-struct StopProgress {
-  Scalar velocity;  ///< The velocity is velocity · v − ramp_velocity · h a.
-  Scalar ramp_velocity;
-  Scalar line;  ///< The displacement is line · h v + ramp · h² a.
-  Scalar ramp;
+  /// If all joints move along their velocities after the ramp: the time in which these velocities would cover the
+  /// displacement of the part [s]. Otherwise 0.
+  Scalar line = Scalar(0);
 };
 
 }  // namespace fpbm

@@ -100,42 +100,11 @@ class StopPlan {
     return u;
   }
 
-  /// Advances the plan by a number of ticks, at most ticks_left(). part.state: state at the start of these ticks, and
-  /// then at their end. Sets the other members of the part.
-  void advance(const MotionLimits& limits, Scalar ticks, StopPart<N, Scalar>& part) noexcept {
-    const Scalar h = limits.tick();
-    const StopProgress<Scalar> from = progress(k_);
-    const StopProgress<Scalar> to = progress(k_ + ticks);
-    // Factors of `last_` in the ramp, and of velocity_/h in the brake, of the accelerations in these ticks.
-    const Scalar ramp_end = std::min(k_ + ticks, ramp_ticks_);
-    const bool ramps = k_ < ramp_end;
-    const Interval<Scalar> ramp{Scalar(1) - ramp_end / ramp_ticks_, Scalar(1) - (k_ + Scalar(1)) / ramp_ticks_};
-    const bool brakes = ramp_end < k_ + ticks;
-    const Interval<Scalar> brake = profile_.removed_fractions(std::max(k_, ramp_ticks_), k_ + ticks - Scalar(1));
-    part.low = filled<JointVector>(last_.size());
-    part.high = part.low;
-    for (Eigen::Index i = 0; i < last_.size(); ++i) {
-      if (stops_alone(i)) {
-        advance_alone(limits, i, ticks, part);
-        continue;
-      }
-      part.state.q(i) += h * (to.line - from.line) * velocity_(i) + h * h * (to.ramp - from.ramp) * last_(i);
-      const Scalar before = part.state.qd(i);
-      const Scalar after = to.velocity * velocity_(i) - h * to.ramp_velocity * last_(i);
-      part.state.qd(i) = after;
-      part.speed(i) = std::max(std::abs(before), std::abs(after));
-      if (ramps && brakes) part.speed(i) = std::max(part.speed(i), std::abs(velocity_(i)));
-      const Scalar a = ramp.high * last_(i);
-      const Scalar b = ramp.low * last_(i);
-      const Scalar c = -brake.low * velocity_(i) / h;
-      const Scalar d = -brake.high * velocity_(i) / h;
-      part.last(i) = brakes ? -profile_.removed_fraction(k_ + ticks - Scalar(1)) * velocity_(i) / h : b;
-      part.low(i) = ramps ? (brakes ? std::min({a, b, c, d}) : std::min(a, b)) : std::min(c, d);
-      part.high(i) = ramps ? (brakes ? std::max({a, b, c, d}) : std::max(a, b)) : std::max(c, d);
-    }
-    k_ += ticks;
-    part.along = ramps || stops_alone_ != 0 ? Scalar(0) : h * (to.line - from.line);
-  }
+  /// Advances a plan by a number of ticks.
+  template <int Joints, typename Number>
+  friend void advance(StopPlan<Level::kAcceleration, Joints, Number>& plan,
+                      const Limits<Level::kAcceleration, Joints, Number>& limits, Number ticks,
+                      StopPart<Joints, Number>& part) noexcept;
   /// Acceleration of the tick before the plan.
   [[nodiscard]] const JointVector& last() const noexcept { return last_; }
   /// Velocities after the ramp, along which the joints brake in proportion [rad/s] or [m/s].
@@ -182,35 +151,6 @@ class StopPlan {
   [[nodiscard]] Scalar ticks_left() const noexcept { return std::max(profile_.ticks() - k_, Scalar(0)); }
 
  private:
-  /// Motion of a joint after k ticks of the plan.
-  [[nodiscard]] StopProgress<Scalar> progress(Scalar k) const noexcept {
-    const Scalar r = ramp_ticks_;
-    if (k < r) {
-      const Scalar missing = k - k * (k + Scalar(1)) / (Scalar(2) * r);
-      return {Scalar(1), ramp_velocity_change() - missing, k,
-              k * (k / Scalar(2) - ramp_velocity_change()) -
-                  k * (k + Scalar(1)) * (Scalar(2) * k + Scalar(1)) / (Scalar(12) * r)};
-    }
-    const auto [velocity, distance] = profile_.after(k);
-    return {velocity, Scalar(0), distance, -ramp_deficit()};
-  }
-
-  /// advance() for joint i, which follows its own shortest stop.
-  void advance_alone(const MotionLimits& limits, Eigen::Index i, Scalar ticks,
-                     StopPart<N, Scalar>& part) const noexcept {
-    const Scalar h = limits.tick();
-    auto& [q, qd] = part.state;
-    for (Scalar k(0); k < ticks; k += Scalar(1)) {
-      const Scalar u = brake_alone(limits, i, part.state, part.last);
-      part.low(i) = k > Scalar(0) ? std::min(part.low(i), u) : u;
-      part.high(i) = k > Scalar(0) ? std::max(part.high(i), u) : u;
-      part.speed(i) = std::max(k > Scalar(0) ? part.speed(i) : std::abs(qd(i)), std::abs(qd(i) + h * u));
-      q(i) += h * (qd(i) + h / Scalar(2) * u);
-      qd(i) += h * u;
-      part.last(i) = u;
-    }
-  }
-
   /// Number of ticks in which an acceleration changes to zero by at most `change` in each tick. Accelerations at the
   /// bound on jerk are multiples of `change` up to the round-off error of a difference of velocities, about 300 ε for
   /// 2 rad/s, 1 ms and 7500 rad/s³. Because of the tolerance of 512 ε, the round-off error does not add a tick.

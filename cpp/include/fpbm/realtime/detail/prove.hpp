@@ -21,7 +21,8 @@ template <typename TrackerState>
     if (state.bounds.empty()) return next;
     auto plan = state.stop.plan;
     const JointVector qdd = plan.next(state.limits(), tick.joints, tick.last);
-    const JointVector slower = TrackerState::kLevel == Level::kAcceleration ? qdd : JointVector(tick.joints.qd + state.dt() * qdd);
+    const JointVector slower =
+        TrackerState::kLevel == Level::kAcceleration ? qdd : JointVector(tick.joints.qd + state.dt() * qdd);
     for (Scalar part(1); !braking && part > Scalar(0.05); part /= Scalar(2)) {
       if (part < Scalar(1)) next = tick.after(JointVector(slower + part * (u - slower)));
       const JointVector last = (next.qd - tick.joints.qd) / state.dt();
@@ -29,7 +30,10 @@ template <typename TrackerState>
         const auto stop = PlannedStop::after(state.limits(), tick.joints, next, last, fraction);
         if (state.bounds.accepts(state.limits(), tick.joints, stop)) {
           state.stop = stop;
-          if (part < Scalar(1)) { multiply_scale(result, part); result.status = Status::kSlowed; }
+          if (part < Scalar(1)) {
+            multiply_scale(result, part);
+            result.status = Status::kSlowed;
+          }
           return next;
         }
       }

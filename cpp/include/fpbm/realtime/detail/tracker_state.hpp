@@ -133,6 +133,7 @@ struct TrackerState {
   void require_bounds() {
     const JointState& start = tick.joints;
     const JointVector& last = tick.last;
+    bounds.require_limits(limits());
     bounds.require(start.q);
     if (bounds.empty()) return;
     for (Eigen::Index i = 0; i < start.q.size() && !limits().is_viable(start, last); ++i) {

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <tuple>
+#include <utility>
+
+#include "fpbm/bound/detail/bound_members.hpp"
+
+namespace fpbm {
+
+/// The bounds of Bounds, and calls for each bound.
+template <typename... Each>
+class BoundTuple {
+ public:
+  static_assert((kHas<Each, bound_member::RowCount> && ...), "a bound needs `static constexpr int kRows`");
+  static_assert((kHas<Each, bound_member::StatusOfRows> && ...),
+                "a bound needs `static constexpr fpbm::Status kStatus`");
+  static_assert((kHas<Each, bound_member::Empty> && ...), "a bound needs `bool empty() const noexcept`");
+
+  /// The bound of a type, for example the Clearance, whose obstacles can move.
+  template <typename Bound>
+  [[nodiscard]] Bound& get() noexcept {
+    return std::get<Bound>(each_);
+  }
+  template <typename Bound>
+  [[nodiscard]] const Bound& get() const noexcept {
+    return std::get<Bound>(each_);
+  }
+
+ protected:
+  BoundTuple() = default;
+  template <typename First, typename... More>
+  explicit BoundTuple(First&& first, More&&... more) : each_(std::forward<First>(first), std::forward<More>(more)...) {}
+
+  /// Calls f(bound) for each bound.
+  template <typename F>
+  void each(F&& f) noexcept {
+    std::apply([&](auto&... bound) noexcept { (f(bound), ...); }, each_);
+  }
+  template <typename F>
+  void each(F&& f) const noexcept {
+    std::apply([&](const auto&... bound) noexcept { (f(bound), ...); }, each_);
+  }
+
+  /// f(bound) of a bound that knows shapes; `other` for any other bound.
+  template <typename Bound, typename F, typename Other>
+  [[nodiscard]] auto of_shapes([[maybe_unused]] const F& f, [[maybe_unused]] Other other) const noexcept {
+    if constexpr (kHas<Bound, bound_member::MovesAway>) {
+      return f(get<Bound>());
+    } else {
+      return other;
+    }
+  }
+
+  std::tuple<Each...> each_;
+};
+
+}  // namespace fpbm

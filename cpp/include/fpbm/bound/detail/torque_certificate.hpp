@@ -1,0 +1,120 @@
+#pragma once
+
+#include <algorithm>
+#include <utility>
+
+#include "fpbm/bound/detail/torque_deviation.hpp"
+#include "fpbm/bound/detail/torque_state.hpp"
+#include "fpbm/limits/detail/stop.hpp"
+#include "fpbm/limits/detail/stop_advance.hpp"
+
+namespace fpbm {
+
+/// Checks whether the torques keep their bounds at the start and at the end of each tick of a stopping trajectory
+/// (docs/torques_proof.md).
+///
+/// The trajectory is checked in parts of as many ticks as TorqueDeviation allows, from the start on. Torques are
+/// evaluated at the ends of the parts.
+template <int N, typename Scalar = double, int Joints = N>
+class TorqueCertificate {
+ public:
+  using JointVector = Vector<N, Scalar>;
+  using Model = Dynamics<N, Scalar, Joints>;
+  using Models = std::vector<Model>;
+  using MotionLimits = Limits<Level::kAcceleration, N, Scalar>;
+  using StopOf = Stop<Level::kAcceleration, N, Scalar>;
+
+  template <typename Source>
+  TorqueCertificate(const Source& source, const Models& models)
+      : deviation_(source, models.back()),
+        here_(models[0].dof(), models.size()),
+        start_(here_),
+        end_(here_),
+        none_(filled<JointVector>(models[0].dof())) {}
+
+  /// The models have other payloads.
+  void set(const Models& models) noexcept {
+    deviation_.set(models.back());
+    here_ = start_ = end_ = TorqueState<N, Scalar>(models[0].dof(), models.size());
+  }
+
+  /// Starts a tick, which may evaluate kEvaluations states. Returns the torques in a state, which remain valid in the
+  /// tick.
+  const TorqueState<N, Scalar>& begin(const Models& models, const State<N, Scalar>& state) noexcept {
+    evaluations_ = 0;
+    return evaluated(here_, models, state);
+  }
+  /// The torques in another state. The next call of this function or of keeps() changes the result.
+  const TorqueState<N, Scalar>& ahead(const Models& models, const State<N, Scalar>& state) noexcept {
+    return evaluated(start_, models, state);
+  }
+
+  /// Whether |τ| ≤ most in the tick from a state and in the stop after the tick.
+  [[nodiscard]] bool keeps(const Models& models, const JointVector& most, const MotionLimits& limits,
+                           const State<N, Scalar>& from, const StopOf& stop) noexcept {
+    kept_fraction_ = Scalar(0);
+    StopPart<N, Scalar> part{stop.start, stop.plan.last(), none_, none_, none_};
+    if (!is_finite(part.state.q) || !is_finite(part.state.qd)) return false;
+    if (!evaluated(here_, models, from).keeps(most, part.last)) return false;
+    if (!evaluated(start_, models, part.state).keeps(most, part.last)) return false;
+    auto plan = stop.plan;
+    while (plan.ticks_left() > Scalar(0)) {
+      if (!keeps_part(models, most, limits, plan, part)) return false;
+    }
+    return true;
+  }
+
+  /// After keeps() was false: fraction of the decelerations with which the bounds are kept where they were exceeded. 0
+  /// if there is none, or for another reason.
+  [[nodiscard]] Scalar kept_fraction() const noexcept { return kept_fraction_; }
+
+ private:
+  /// Most states that are evaluated in one tick: the longest ticks are 160,000 instructions (make count).
+  static constexpr int kEvaluations = 48;
+
+  /// Advances a plan and a part of the stop by as many ticks as are proved to keep the bounds. Returns whether any are.
+  [[nodiscard]] bool keeps_part(const Models& models, const JointVector& most, const MotionLimits& limits,
+                                StopPlan<Level::kAcceleration, N, Scalar>& plan, StopPart<N, Scalar>& part) noexcept {
+    const auto before = part;
+    for (Scalar ticks = plan.phase_ticks();; ticks = std::floor(ticks / Scalar(2))) {
+      auto next = plan;
+      part = before;
+      advance(next, limits, ticks, part);
+      const bool single = !(ticks > Scalar(1));
+      const JointVector deviation = single ? none_ : deviation_.of(part, plan.velocity(), ticks * limits.tick());
+      if (start_.keeps(most, part.low, part.high, deviation)) {
+        if (!evaluated(end_, models, part.state).keeps(most, part.last)) {
+          kept_fraction_ = end_.kept_fraction(most, part.last);
+          return false;
+        }
+        if (evaluations_ > kEvaluations) return false;
+        if (end_.keeps(most, part.low, part.high, deviation)) {
+          std::swap(start_, end_);
+          plan = next;
+          return true;
+        }
+      }
+      if (single) {
+        kept_fraction_ = start_.kept_fraction(most, part.last);
+        return false;
+      }
+    }
+  }
+
+  const TorqueState<N, Scalar>& evaluated(TorqueState<N, Scalar>& torques, const Models& models,
+                                          const State<N, Scalar>& state) noexcept {
+    evaluations_ += torques.set(models, state, memory_) ? 1 : 0;
+    return torques;
+  }
+
+  TorqueDeviation<N, Scalar, Joints> deviation_;
+  TorqueState<N, Scalar> here_;   ///< At the start of the tick.
+  TorqueState<N, Scalar> start_;  ///< At the start of a part of the stop.
+  TorqueState<N, Scalar> end_;
+  JointVector none_;
+  typename Model::State memory_;
+  int evaluations_ = 0;
+  Scalar kept_fraction_ = Scalar(0);
+};
+
+}  // namespace fpbm
