@@ -15,10 +15,12 @@ namespace {
 
 /// Throws std::invalid_argument unless an inertia about the centre of mass is the inertia of some body: symmetric, with
 /// principal moments that are not negative, of which no moment exceeds the sum of the other two.
-void require_physical(const validation::Argument& name, const Matrix<3, 3>& inertia) {
-  constexpr double kTolerance = 1e-4;  // Relative to the largest entry: published numbers are rounded to 4 digits.
+void require_physical(const validation::Argument& name, const LinkInertia<>& link) {
+  constexpr double kRelative = 1e-4;   // Published numbers are rounded to 4 digits.
+  constexpr double kAbsolute = 1e-12;  // [m²] A radius of gyration below 1 µm is round-off.
   constexpr const char* kRemedy = ": correct the inertia of the link that the joint moves";
-  const double least = kTolerance * inertia.cwiseAbs().maxCoeff();
+  const Matrix<3, 3>& inertia = link.inertia;
+  const double least = kRelative * inertia.cwiseAbs().maxCoeff() + kAbsolute * link.mass;
   if ((inertia - inertia.transpose()).cwiseAbs().maxCoeff() > least) {
     validation::reject(name + ".inertia", ": must be symmetric", kRemedy);
   }
@@ -41,7 +43,7 @@ void require_inertia(const Tree<>& tree) {
   std::vector<bool> moves(count);  // Whether the joint, or a joint that follows the joint, moves a mass.
   for (std::size_t i = count; i-- > 0;) {
     const auto& [joint, parent] = tree.joints[i];
-    require_physical(name(i), joint.moved.inertia);
+    require_physical(name(i), joint.moved);
     if (joint.moved.mass > 0.0 || joint.moved.inertia.norm() > 0.0) moves[i] = true;
     if (moves[i] && parent > 0) moves[static_cast<std::size_t>(parent) - 1] = true;
   }

@@ -458,12 +458,12 @@ def physical(arm: Any) -> Any:
 @pytest.mark.parametrize(
     ("moments", "message"),
     [
-        ('ixx="-0.1" iyy="0.2" izz="0.2"', r"joint 'j'\.inertia has the principal moment -0\.1.*must not be negative"),
+        ('ixx="-0.1" iyy="0.2" izz="0.2"', r"joint 'j'.*inertia has the principal moment -0\.1.*must"),
         (
             'ixx="0.1" iyy="0.2" izz="0.4"',
-            r"joint 'j'\.inertia has the principal moments 0\.1, 0\.2 and 0\.4.*triangle",
+            r"joint 'j'.*inertia has the principal moments 0\.1, 0\.2 and 0\.4.*triangle inequality",
         ),
-        ('ixx="0.1" iyy="0.1" izz="0.1" ixy="0.2"', r"joint 'j'\.inertia.*-0\.1.*must not be negative"),
+        ('ixx="0.1" iyy="0.1" izz="0.1" ixy="0.2"', r"joint 'j'.*inertia has the principal moment -0\.1.*must"),
     ],
 )
 def test_an_inertia_that_no_body_has(write: Any, read: Any, moments: str, message: str) -> None:
@@ -476,13 +476,12 @@ def test_an_inertia_that_no_body_has(write: Any, read: Any, moments: str, messag
 
 
 def test_an_inertia_that_is_not_symmetric() -> None:
-    with pytest.raises(fp.ParameterError, match=r"joint 'a'\.inertia: must be symmetric"):
+    with pytest.raises(fp.ParameterError, match=r"joint 'a'.*inertia.* must be symmetric"):
         physical(fp.SerialArm([Joint(name="a", mass=1, inertia=[[1, 0.5, 0], [0, 1, 0], [0, 0, 1]])]))
 
 
 def test_a_drive_that_moves_no_mass(write: Any, read: Any) -> None:
-    message = r"joint 'j' moves no mass: dynamics need masses: give mass, center and inertia of fp\.Joint"
-    with pytest.raises(fp.ParameterError, match=message):
+    with pytest.raises(fp.ParameterError, match=r"joint 'j' moves no mass.*: give "):
         physical(read(file_of(write, moving="")))
     for arm in (fp.PlanarArm([1, 1]), fp.SerialArm([Joint(mass=1), Joint()])):
         with pytest.raises(fp.ParameterError, match=r"joint 'joint_[12]' moves no mass"):
