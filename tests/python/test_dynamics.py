@@ -475,6 +475,12 @@ def test_an_inertia_that_no_body_has(write: Any, read: Any, moments: str, messag
             physical(robot)
 
 
+def test_an_inertia_may_be_rounded(write: Any, read: Any) -> None:
+    """To 4 digits, or to nothing: the numbers of a neck of iCub, and of a plate."""
+    for moments in ('ixx="7.9e-67" ixz="2.40741e-35"', 'ixx="0.1234" iyy="0.5678" izz="0.69125"'):
+        assert np.isfinite(physical(read(file_of(write, moving=inertial(moments)))))
+
+
 def test_an_inertia_that_is_not_symmetric() -> None:
     with pytest.raises(fp.ParameterError, match=r"joint 'a'.*inertia.* must be symmetric"):
         physical(fp.SerialArm([Joint(name="a", mass=1, inertia=[[1, 0.5, 0], [0, 1, 0], [0, 0, 1]])]))
