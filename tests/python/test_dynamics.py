@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import pickle
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -37,6 +38,7 @@ ROBOTS: dict[str, tuple[str, str | None, tuple[str, ...] | None]] = {
     "tiago_arm": ("tiago_description/robots/tiago.urdf", None, ("arm_tool_link",)),
     "ur10": ("ur_description/urdf/ur10_robot.urdf", None, None),
 }
+TREES = int(os.environ.get("FPBM_TREES", "100"))
 INERTIAL = ("kinetic_energy", "potential_energy", "inverse_dynamics", "bias", "gravity", "mass_matrix")
 
 
@@ -100,15 +102,17 @@ class Reference:
         }
 
 
-def model_of(arm: fp.SerialArm) -> Any:
-    """The joints and links of an arm as a model of Pinocchio."""
+def model_of(robot: fp.SerialArm | fp.Robot) -> Any:
+    """The joints and links of an arm or a robot as a model of Pinocchio, in which mimic joints are independent."""
     model = pin.Model()
-    for i, joint in enumerate(arm.joints):
+    joints = joints_of(robot)
+    parents = [each.parent for each in robot.joints] if isinstance(robot, fp.Robot) else range(len(joints))
+    for i, (joint, parent) in enumerate(zip(joints, parents), 1):
         axis = joint.axis / np.linalg.norm(joint.axis)
         kind = pin.JointModelPrismaticUnaligned if joint.type == "prismatic" else pin.JointModelRevoluteUnaligned
-        model.addJoint(i, kind(axis), pin.SE3(joint.placement), joint.name)
-        model.appendBodyToJoint(i + 1, pin.Inertia(joint.mass, joint.center, joint.inertia), pin.SE3.Identity())
-    model.armature = np.array([joint.rotor_inertia for joint in arm.joints])
+        model.addJoint(parent, kind(axis), pin.SE3(joint.placement), joint.name)
+        model.appendBodyToJoint(i, pin.Inertia(joint.mass, joint.center, joint.inertia), pin.SE3.Identity())
+    model.armature = np.array([joint.rotor_inertia for joint in joints])
     return model
 
 
@@ -152,7 +156,12 @@ def random_robot(seed: int) -> fp.Robot:
     joints = [random_joint(rng, f"j{i}", str(type)) for i, type in enumerate(types)]
     joints[4] = replace(joints[4], type="revolute", mimic=(1, -0.7, 0.2))
     joints[6] = replace(joints[6], mimic=(3, 1.3, 0.0))
-    parents = [int(rng.integers(0, i + 1)) for i in range(8)]
+    parents: list[int] = []
+    carriers = [0]  # Links from the base to the last link: depth first, as Pinocchio needs.
+    for i in range(8):
+        carriers = carriers[: int(rng.integers(1, len(carriers) + 1))]
+        parents.append(carriers[-1])
+        carriers.append(i + 1)
     return fp.Robot(list(map(fp.TreeJoint, joints, parents)), gravity_vector=rng.uniform(-10, 10, 3))
 
 
@@ -205,6 +214,14 @@ def test_an_arm_carries_all_that_is_attached(file: str, tip: str) -> None:
 def test_presets_equal_pinocchio(name: str) -> None:
     arm = fp.SerialArm.preset(name)
     expect_equal(arm, Reference(model_of(arm), arm), np.random.default_rng(3))
+
+
+@needs_pinocchio
+def test_random_trees_equal_pinocchio() -> None:
+    """Trees with prismatic joints, joints that follow others, rotors and gravity in any direction."""
+    for seed in range(TREES):
+        robot = random_robot(seed)
+        expect_equal(robot, Reference(model_of(robot), robot), np.random.default_rng(seed), states=1)
 
 
 # Laws
