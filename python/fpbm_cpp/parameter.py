@@ -74,7 +74,7 @@ class Parameter:
         """The value as the parameter's type; arrays are copied and read-only. Raises ParameterError."""
         if value is None and self.default is None:
             return value
-        if type(value) is float and self.type is float and self._has(value) and math.isfinite(value):
+        if type(value) is float and self.type is float and self._has(value) and (self.infinite or math.isfinite(value)):
             return value  # Most values are numbers; their check is ten times as fast without NumPy.
         if isinstance(value, str) and self.choices:
             if value not in self.choices:
@@ -103,7 +103,7 @@ class Parameter:
             allowed &= self._has(array)
         if self.whole:
             allowed &= array == np.floor(array)
-        for index in map(tuple, np.argwhere(~allowed).tolist()):
+        for index in map(tuple, [] if allowed.all() else np.argwhere(~allowed).tolist()):
             raise self._error(float(array[index]), self._demand() if array.ndim < 2 else "finite", index)
         array = array.astype(int) if self.whole else array
         array.setflags(write=False)
@@ -122,6 +122,11 @@ def _fits(shape: tuple[int, ...], required: str) -> bool:
         and all(size == str(n) or (size.isalpha() and shape[sizes.index(size)] == n) for size, n in zip(sizes, shape))
         for sizes in (re.findall(r"\w+", each) for each in required.split(" or "))
     )
+
+
+def renamed(name: str, value: Any, like: Parameter) -> Any:
+    """A checked argument of a function, as a parameter. Raises ParameterError with the name of the argument."""
+    return replace(like, name=name, type=like.type if like.shape else float).check(value)
 
 
 POSITIVE = Parameter(low=0.0, open_low=True)

@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "fpbm/model/detail/robot_presets.hpp"
 #include "fpbm/model/serial_arm.hpp"
 #include "support/arms.hpp"
 #include "support/compiled_tracker.hpp"
@@ -373,6 +375,58 @@ TEST(Presets, run_in_a_control_loop_with_default_limits) {
     if (arm.dof() < Pose::kRows) continue;
     EXPECT_NO_THROW((expect_to_reach_a_near_target<Pose>(arm, FPBM<kOpen>(0.6, ones, 20.0, 100.0, z))));
     EXPECT_NO_THROW((expect_to_reach_a_near_target<Pose>(arm, WMVN<kOpen>(ones, 10.0))));
+  }
+}
+
+/// Principal moments that are positive and satisfy the triangle inequality; bounds on the efforts.
+template <typename Joints>
+void expect_links(const Joints& joints) {
+  for (const Joint<>& joint : joints) {
+    const auto& [mass, centre, inertia] = joint.moved;
+    const Eigen::Matrix3d symmetric = inertia;
+    EXPECT_EQ(symmetric, symmetric.transpose()) << joint.name;
+    const Eigen::Vector3d moments = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(symmetric).eigenvalues();
+    EXPECT_GT(mass, 0.0) << joint.name;
+    EXPECT_LT(centre.norm(), 0.5) << joint.name;
+    EXPECT_GT(moments(0), 0.0) << joint.name;
+    EXPECT_LE(moments(2), moments(0) + moments(1)) << joint.name;
+    EXPECT_TRUE(std::isfinite(joint.bounds.effort)) << joint.name;
+  }
+}
+
+TEST(Presets, links_have_inertias_of_bodies_and_drives_have_bounds_on_their_efforts) {
+  for (const presets::Preset& known : presets::kAll) {
+    SCOPED_TRACE(known.name);
+    expect_links(known.chain().joints);
+  }
+  for (const presets::RobotPreset& known : presets::kRobots) {
+    SCOPED_TRACE(known.name);
+    std::vector<Joint<>> joints;
+    for (const TreeJoint<>& each : known.tree().joints) joints.push_back(each.joint);
+    expect_links(joints);
+  }
+}
+
+/// Universal Robots gives inertias in the frames of the Denavit-Hartenberg table. Frame 1 is rotated by 90° about x,
+/// and frame 2 is at the end of the upper arm, at x = −0.425 m.
+TEST(Presets, links_of_the_ur5e_are_in_the_frames_of_its_table) {
+  const Chain<> chain = preset("ur5e");
+  EXPECT_LE((chain.joints[1].moved.centre - Vector<3>(0.2125 - 0.425, 0.0, 0.11336)).norm(), 1e-15);
+  const LinkInertia<>& shoulder = chain.joints[0].moved;
+  EXPECT_LE((shoulder.centre - Vector<3>(0.0, -0.00193, 0.1625 - 0.02561)).norm(), 1e-15);
+  EXPECT_NEAR(shoulder.inertia(1, 1), 0.00657286, 1e-15);
+  EXPECT_NEAR(shoulder.inertia(1, 2), -0.00049994, 1e-15);
+}
+
+/// The right arm of the G1 is the mirror image of its left arm.
+TEST(Presets, arms_of_the_g1_are_mirror_images) {
+  const Tree<> tree = presets::g1_upper_body();
+  const Matrix<3, 3> mirror = Vector<3>(1.0, -1.0, 1.0).asDiagonal();
+  for (std::size_t i = 3; i < 10; ++i) {
+    const LinkInertia<>& left = tree.joints[i].joint.moved;
+    const LinkInertia<>& right = tree.joints[i + 7].joint.moved;
+    EXPECT_EQ(right.centre, Vector<3>(mirror * left.centre)) << i;
+    EXPECT_EQ(right.inertia, (Matrix<3, 3>(mirror * left.inertia * mirror))) << i;
   }
 }
 

@@ -82,34 +82,34 @@ def read_xml(path: str | os.PathLike[str], kept: Kept) -> Element:
     root = Element("robot", 1, {})
     count = 0
 
-    def require(sound: object, reason: str) -> None:
-        if not sound:
-            raise ValueError(f"line {parser.CurrentLineNumber}: {reason}")
+    def reject(reason: str) -> None:
+        raise ValueError(f"line {parser.CurrentLineNumber}: {reason}")
 
     def start(tag: str, attributes: dict[str, str]) -> None:
         nonlocal count
         count += 1
-        require(
-            count <= MAX_ELEMENTS,
-            f"has more than {MAX_ELEMENTS} XML elements: must be the URDF or SRDF file of a robot",
-        )
-        require(
-            len(opened) < MAX_DEPTH, f"XML elements are nested more than {MAX_DEPTH} deep: must be a URDF or SRDF file"
-        )
-        require(not tag.startswith("xacro:"), f"<{cut(tag)}>: run xacro on the file first")
-        require(opened or tag == "robot", f"the root is <{cut(tag)}>: must be <robot>, as in a URDF or SRDF file")
-        here = kept.get(tuple(element.tag for element in opened), {})
+        if count > MAX_ELEMENTS:
+            reject(f"has more than {MAX_ELEMENTS} XML elements: must be the URDF or SRDF file of a robot")
+        if len(opened) >= MAX_DEPTH:
+            reject(f"XML elements are nested more than {MAX_DEPTH} deep: must be a URDF or SRDF file")
+        if tag.startswith("xacro:"):
+            reject(f"<{cut(tag)}>: run xacro on the file first")
+        if not opened and tag != "robot":
+            reject(f"the root is <{cut(tag)}>: must be <robot>, as in a URDF or SRDF file")
+        here = kept.get(tuple([element.tag for element in opened]), {})
         own = {key: attributes[key] for key in here.get(tag, ()) if key in attributes}
         for key, text in own.items():
-            what = f"{tag} {key} = {cut(text)!r}"
-            require(len(text) <= MAX_TEXT, f"{what} has {len(text)} characters: must have at most {MAX_TEXT}")
-            require("${" not in text, f"{what}: run xacro on the file first")
+            if len(text) > MAX_TEXT:
+                has = f"has {len(text)} characters: must have at most {MAX_TEXT}"
+                reject(f"{tag} {key} = {cut(text)!r} {has}")
+            if "${" in text:
+                reject(f"{tag} {key} = {cut(text)!r}: run xacro on the file first")
         element = Element(tag, parser.CurrentLineNumber, own) if opened else root
         if tag in here:
             opened[-1].parts.append(element)
         opened.append(element)
 
-    parser.StartDoctypeDeclHandler = lambda *_: require(False, "has a DOCTYPE: must have none")
+    parser.StartDoctypeDeclHandler = lambda *_: reject("has a DOCTYPE: must have none")
     parser.StartElementHandler = start
     parser.EndElementHandler = lambda _: opened.pop()
     try:
