@@ -29,7 +29,7 @@ template <int N, typename Scalar, int Joints>
     const auto carrier = static_cast<std::size_t>(robot.parent(link));
     const Vector3 z = column(state.R[k], 2);
     Vector3 moved;  // Derivative of the moment m c with respect to the joint.
-    const Vector3 arm = plus(moment[k], -mass[k], state.p[k]);
+    const Vector3 arm = entrywise(moment[k], [&](Eigen::Index x) { return moment[k](x) - mass[k] * state.p[k](x); });
     if (robot.turns(link - 1)) {
       moved = cross(z, arm);
     } else {
@@ -44,7 +44,7 @@ template <int N, typename Scalar, int Joints>
     });
     if (carrier == 0) continue;
     mass[carrier] += mass[k];
-    moment[carrier] = plus(moment[carrier], Scalar(1), moment[k]);
+    for (int x = 0; x < 3; ++x) moment[carrier](x) += moment[k](x);
   }
   Matrix<N, N, Scalar> result = filled<Matrix<N, N, Scalar>>(robot.dof());
   for (Eigen::Index j = 0; j < joints; ++j) {
