@@ -106,6 +106,12 @@ TEST(StopAdvance, repeats_next) {
   return model.inverse_dynamics(at, u);
 }
 
+[[nodiscard]] Matrix<kN, kN> mass_matrix(const Dynamics<kN>& model, const State<kN>& state) {
+  Dynamics<kN>::State at;
+  model.robot().update(state.q, at);
+  return model.mass_matrix(at);
+}
+
 /// In every tick of a part, the torques for any constant acceleration within the ranges are between the torques at both
 /// ends of the part, up to the deviation.
 TEST(TorqueDeviation, bounds_the_torques_between_two_ends) {
@@ -128,7 +134,7 @@ TEST(TorqueDeviation, bounds_the_torques_between_two_ends) {
     const double ticks = std::min(plan.phase_ticks(), std::ceil(random.uniform(0.0, 60.0)));
     StopPart<kN> to = part;
     advance(plan, limits, ticks, to);
-    const Joints more = deviation.of(to, plan.velocity(), ticks * limits.tick());
+    const Joints more = deviation.of(mass_matrix(model, from), to, plan.velocity(), ticks * limits.tick());
     const Joints u = to.low + random.uniform(kN, 0.0, 1.0).cwiseProduct(to.high - to.low);
     const Joints a = torque(model, from, u);
     const Joints b = torque(model, to.state, u);

@@ -28,38 +28,42 @@ class TorqueCertificate {
   TorqueCertificate(const Source& source, const Models& models)
       : deviation_(source, models.back()),
         here_(models[0].dof(), models.size()),
-        start_(here_),
-        end_(here_),
+        next_(here_),
+        ends_{here_, here_},
         none_(filled<JointVector>(models[0].dof())) {}
 
   /// The models have other payloads.
   void set(const Models& models) noexcept {
     deviation_.set(models.back());
-    here_ = start_ = end_ = TorqueState<N, Scalar>(models[0].dof(), models.size());
+    here_ = next_ = ends_[0] = ends_[1] = TorqueState<N, Scalar>(models[0].dof(), models.size());
   }
 
   /// Starts a tick, which may evaluate kEvaluations states. Returns the torques in a state, which remain valid in the
   /// tick.
   const TorqueState<N, Scalar>& begin(const Models& models, const State<N, Scalar>& state) noexcept {
     evaluations_ = 0;
+    if (next_.is_at(state)) std::swap(here_, next_);
     return evaluated(here_, models, state);
   }
-  /// The torques in another state. The next call of this function or of keeps() changes the result.
+  /// The torques at the predicted end of the tick. keeps() may change the result.
   const TorqueState<N, Scalar>& ahead(const Models& models, const State<N, Scalar>& state) noexcept {
-    return evaluated(start_, models, state);
+    return evaluated(next_, models, state);
   }
 
   /// Whether |τ| ≤ most in the tick from a state and in the stop after the tick.
   [[nodiscard]] bool keeps(const Models& models, const JointVector& most, const MotionLimits& limits,
                            const State<N, Scalar>& from, const StopOf& stop) noexcept {
     kept_fraction_ = Scalar(0);
+    if (evaluations_ > kEvaluations) return false;
     StopPart<N, Scalar> part{stop.start, stop.plan.last(), none_, none_, none_};
     if (!is_finite(part.state.q) || !is_finite(part.state.qd)) return false;
     if (!evaluated(here_, models, from).keeps(most, part.last)) return false;
-    if (!evaluated(start_, models, part.state).keeps(most, part.last)) return false;
+    if (!evaluated(next_, models, part.state).keeps(most, part.last)) return false;
     auto plan = stop.plan;
-    while (plan.ticks_left() > Scalar(0)) {
-      if (!keeps_part(models, most, limits, plan, part)) return false;
+    const TorqueState<N, Scalar>* start = &next_;
+    for (std::size_t end = 0; plan.ticks_left() > Scalar(0); end = 1 - end) {
+      if (!keeps_part(models, most, limits, *start, plan, part, ends_[end])) return false;
+      start = &ends_[end];
     }
     return true;
   }
@@ -70,34 +74,41 @@ class TorqueCertificate {
 
  private:
   /// Most states that are evaluated in one tick: the longest ticks are 160,000 instructions (make count).
-  static constexpr int kEvaluations = 48;
+  static constexpr int kEvaluations = 40;
 
-  /// Advances a plan and a part of the stop by as many ticks as are proved to keep the bounds. Returns whether any are.
+  /// Advances a plan and a part of the stop, from the torques `start` to the torques `end`, by as many ticks as are
+  /// proved to keep the bounds. Returns whether any are.
   [[nodiscard]] bool keeps_part(const Models& models, const JointVector& most, const MotionLimits& limits,
-                                StopPlan<Level::kAcceleration, N, Scalar>& plan, StopPart<N, Scalar>& part) noexcept {
+                                const TorqueState<N, Scalar>& start, StopPlan<Level::kAcceleration, N, Scalar>& plan,
+                                StopPart<N, Scalar>& part, TorqueState<N, Scalar>& end) noexcept {
     const auto before = part;
-    for (Scalar ticks = plan.phase_ticks();; ticks = std::floor(ticks / Scalar(2))) {
+    for (Scalar ticks = plan.phase_ticks();;) {
       auto next = plan;
       part = before;
       advance(next, limits, ticks, part);
       const bool single = !(ticks > Scalar(1));
-      const JointVector deviation = single ? none_ : deviation_.of(part, plan.velocity(), ticks * limits.tick());
-      if (start_.keeps(most, part.low, part.high, deviation)) {
-        if (!evaluated(end_, models, part.state).keeps(most, part.last)) {
-          kept_fraction_ = end_.kept_fraction(most, part.last);
+      const JointVector deviation =
+          single ? none_ : deviation_.of(start.of[models.size() - 1].M, part, plan.velocity(), ticks * limits.tick());
+      Scalar kept = start.kept_part(most, part.low, part.high, deviation);
+      if (kept >= Scalar(1)) {
+        if (!evaluated(end, models, part.state).keeps(most, part.last)) {
+          kept_fraction_ = end.kept_fraction(most, part.last);
           return false;
         }
         if (evaluations_ > kEvaluations) return false;
-        if (end_.keeps(most, part.low, part.high, deviation)) {
-          std::swap(start_, end_);
+        kept = end.kept_part(most, part.low, part.high, deviation);
+        if (kept >= Scalar(1)) {
           plan = next;
           return true;
         }
       }
       if (single) {
-        kept_fraction_ = start_.kept_fraction(most, part.last);
+        kept_fraction_ = start.kept_fraction(most, part.last);
         return false;
       }
+      // The deviation increases with the square of the duration, approximately.
+      const Scalar shorter = std::sqrt(std::max(kept, Scalar(0)));
+      ticks = std::max(std::floor(ticks * std::clamp(shorter, Scalar(0.2), Scalar(0.8))), Scalar(1));
     }
   }
 
@@ -108,9 +119,9 @@ class TorqueCertificate {
   }
 
   TorqueDeviation<N, Scalar, Joints> deviation_;
-  TorqueState<N, Scalar> here_;   ///< At the start of the tick.
-  TorqueState<N, Scalar> start_;  ///< At the start of a part of the stop.
-  TorqueState<N, Scalar> end_;
+  TorqueState<N, Scalar> here_;     ///< At the start of the tick.
+  TorqueState<N, Scalar> next_;     ///< At the end of the tick.
+  TorqueState<N, Scalar> ends_[2];  ///< At the ends of the parts of the stop, in turn.
   JointVector none_;
   typename Model::State memory_;
   int evaluations_ = 0;

@@ -36,10 +36,14 @@ struct TorqueState {
       : at{filled<JointVector>(dof, std::numeric_limits<Scalar>::quiet_NaN()), filled<JointVector>(dof)},
         models(count) {}
 
+  [[nodiscard]] bool is_at(const State<N, Scalar>& state) const noexcept {
+    return at.q == state.q && at.qd == state.qd;
+  }
+
   /// Evaluates models in a state. Returns whether the state is another than before.
   template <typename Models, typename RobotState_>
   bool set(const Models& dynamics, const State<N, Scalar>& state, RobotState_& memory) noexcept {
-    if (at.q == state.q && at.qd == state.qd) return false;
+    if (is_at(state)) return false;
     at = state;
     dynamics[0].robot().update(state.q, state.qd, memory);
     for (std::size_t k = 0; k < models; ++k) {
@@ -49,9 +53,11 @@ struct TorqueState {
     return true;
   }
 
-  /// Whether |τ_i| + more_i ≤ most_i for all accelerations from low to high.
-  [[nodiscard]] bool keeps(const JointVector& most, const JointVector& low, const JointVector& high,
-                           const JointVector& more) const noexcept {
+  /// Largest f, at most 1, with |τ_i| + f more_i ≤ most_i for all accelerations from low to high. Negative if |τ_i|
+  /// exceeds most_i.
+  [[nodiscard]] Scalar kept_part(const JointVector& most, const JointVector& low, const JointVector& high,
+                                 const JointVector& more) const noexcept {
+    Scalar part(1);
     const auto middle = entrywise(low, [&](Eigen::Index i) { return (low.coeff(i) + high.coeff(i)) / Scalar(2); });
     for (std::size_t k = 0; k < models; ++k) {
       const JointVector torque = of[k](middle);
@@ -59,11 +65,14 @@ struct TorqueState {
         const Scalar spread = sum_over(low, [&](Eigen::Index j) {
           return std::abs(of[k].M.coeff(i, j)) * (high.coeff(j) - low.coeff(j)) / Scalar(2);
         });
-        if (!(std::abs(torque.coeff(i)) + spread + more.coeff(i) <= most.coeff(i))) return false;
+        const Scalar slack = most.coeff(i) - std::abs(torque.coeff(i)) - spread;
+        if (!(slack >= Scalar(0))) return Scalar(-1);
+        if (more.coeff(i) * part > slack) part = slack / more.coeff(i);
       }
     }
-    return true;
+    return part;
   }
+  /// Whether |τ_i| ≤ most_i for the accelerations u.
   [[nodiscard]] bool keeps(const JointVector& most, const JointVector& u) const noexcept {
     for (std::size_t k = 0; k < models; ++k) {
       const JointVector torque = of[k](u);
