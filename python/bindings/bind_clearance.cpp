@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "arrays.hpp"
@@ -31,6 +32,32 @@ Clearance<kDynamic> clearance_of(const Model& model, const py::handle& given) {
                                 py::cast<Allowed>(field(given, "allowed")));
   clearance.keep_away({py::cast<double>(field(given, "away_gain")), py::cast<double>(field(given, "away_range"))});
   return clearance;
+}
+
+/// The bounds on torques from an fpbm_cpp.TorqueBounds. Throws std::invalid_argument if the arm has no efforts.
+TorqueBounds<kDynamic> torque_bounds_of(const Model& model, const py::handle& given) {
+  const py::object effort = field(given, "effort");
+  JointVector most = model.limits().effort;
+  if (!effort.is_none()) {
+    const auto values = py::cast<py::array_t<double>>(effort);
+    if (values.ndim() == 0) {
+      most.setConstant(py::cast<double>(effort));
+    } else {
+      most = bound_vector(ArrayLike(effort), "effort");
+    }
+  }
+  validation::require_size("effort", most.size(), model.dof());
+  if (!is_finite(most) && !most.array().isFinite().any()) {
+    validation::reject("effort", ": must be given, because the arm has no efforts: TorqueBounds(effort=...)");
+  }
+  most *= py::cast<double>(field(given, "fraction"));
+  std::optional<AnyDynamics> lighter;
+  if (const py::object other = field(given, "lighter"); !other.is_none()) {
+    const auto& light = py::cast<const Model&>(other);
+    validation::require_size("joints of lighter", light.robot.joints(), model.robot.joints());
+    lighter = light.dynamics();
+  }
+  return {model.tree, model.dynamics(), most, lighter};
 }
 
 /// Adds an fpbm_cpp.TaskBounds.
@@ -106,18 +133,22 @@ AnyBounds bounds_of(const Model& model, const py::object& given) {
   Clearance<kDynamic> clearance(model.tree, {}, {}, 0.0);
   TaskBounds<kDynamic> walls(model.tree);
   SpeedBounds<kDynamic> speeds(model.tree);
+  std::optional<OptionalTorqueBounds> torques;
   bool is_clear = false;
   for (const py::handle each : given) {
     if (is_class(each, "clearance", "Clearance")) {
       if (is_clear) validation::reject("bounds", " has two Clearances: must have at most one, with all shapes");
       clearance = clearance_of(model, each);
       is_clear = true;
+    } else if (is_class(each, "torque_bounds", "TorqueBounds")) {
+      if (torques) validation::reject("bounds", " has two TorqueBounds: must have at most one");
+      torques.emplace(torque_bounds_of(model, each));
     } else {
       require_class(each, "task_bounds", "TaskBounds", "bounds", kBoundsDemand);
       add_task_bounds(walls, speeds, model, each);
     }
   }
-  return AnyBounds(clearance, walls, speeds);
+  return AnyBounds(clearance, walls, speeds, torques ? *torques : OptionalTorqueBounds());
 }
 
 std::optional<PyNearest> nearest_at(const Clearance<kDynamic>& clearance, const JointVector& q) {

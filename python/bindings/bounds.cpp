@@ -3,8 +3,8 @@
 namespace fpbm::bindings {
 
 AnyBounds::AnyBounds(const Clearance<kDynamic>& clearance, const TaskBounds<kDynamic>& walls,
-                     const SpeedBounds<kDynamic>& speeds)
-    : all_(clearance, walls, speeds) {}
+                     const SpeedBounds<kDynamic>& speeds, const OptionalTorqueBounds& torques)
+    : all_(clearance, walls, speeds, torques) {}
 
 AnyBounds::AnyBounds(const AnyBounds& other) = default;
 AnyBounds::AnyBounds(AnyBounds&& other) noexcept = default;
@@ -29,6 +29,10 @@ JointVector AnyBounds::away(const JointVector& q) noexcept {
 }
 
 template <Level kLevel>
+void AnyBounds::require_limits(const Limits<kLevel, kDynamic>& limits) const {
+  all_.require_limits(limits);
+}
+template <Level kLevel>
 Rows<kDynamic, AnyBounds::kRows> AnyBounds::rows(const NextMotion<kLevel, kDynamic>& next) noexcept {
   return all_.rows(next);
 }
@@ -45,6 +49,8 @@ using LimitsOf = Limits<kLevel, kDynamic>;
 template <Level kLevel>
 using StopOf = Stop<kLevel, kDynamic>;
 using AnyRows = Rows<kDynamic, AnyBounds::kRows>;
+template void AnyBounds::require_limits(const LimitsOf<Level::kVelocity>&) const;
+template void AnyBounds::require_limits(const LimitsOf<Level::kAcceleration>&) const;
 template AnyRows AnyBounds::rows(const NextOf<Level::kVelocity>&) noexcept;
 template AnyRows AnyBounds::rows(const NextOf<Level::kAcceleration>&) noexcept;
 template bool AnyBounds::accepts(const LimitsOf<Level::kVelocity>&, const State<kDynamic>&,

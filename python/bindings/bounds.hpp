@@ -7,19 +7,20 @@
 #include "fpbm/bound/speed_bounds.hpp"
 #include "fpbm/bound/task_bounds.hpp"
 #include "model.hpp"
+#include "optional_torque_bounds.hpp"
 
 namespace fpbm::bindings {
 
 /// The bounds of a motion: the functions of fpbm::Bounds, compiled once, in bounds.cpp. Bounds that are not given are
 /// empty.
 class AnyBounds {
-  using All = Bounds<Clearance<kDynamic>, TaskBounds<kDynamic>, SpeedBounds<kDynamic>>;
+  using All = Bounds<Clearance<kDynamic>, TaskBounds<kDynamic>, SpeedBounds<kDynamic>, OptionalTorqueBounds>;
 
  public:
   static constexpr int kRows = All::kRows;
 
   AnyBounds(const Clearance<kDynamic>& clearance, const TaskBounds<kDynamic>& walls,
-            const SpeedBounds<kDynamic>& speeds);
+            const SpeedBounds<kDynamic>& speeds, const OptionalTorqueBounds& torques);
   AnyBounds(const AnyBounds& other);
   AnyBounds(AnyBounds&& other) noexcept;
   AnyBounds& operator=(const AnyBounds&) = delete;
@@ -32,9 +33,12 @@ class AnyBounds {
   [[nodiscard]] double slower_stop(double fraction) const noexcept { return all_.slower_stop(fraction); }
   void require(const JointVector& q);
   template <Level kLevel>
+  void require_limits(const Limits<kLevel, kDynamic>& limits) const;
+  template <Level kLevel>
   [[nodiscard]] Rows<kDynamic, kRows> rows(const NextMotion<kLevel, kDynamic>& next) noexcept;
   template <Level kLevel>
-  [[nodiscard]] bool accepts(const Limits<kLevel, kDynamic>& limits, const State<kDynamic>& from, const Stop<kLevel, kDynamic>& stop) noexcept;
+  [[nodiscard]] bool accepts(const Limits<kLevel, kDynamic>& limits, const State<kDynamic>& from,
+                             const Stop<kLevel, kDynamic>& stop) noexcept;
   void gaps(const JointVector& q, double range, const std::function<void(double, const JointVector&)>& f) noexcept;
   [[nodiscard]] double closeness(const JointVector& q, double range) noexcept;
   [[nodiscard]] double speed_ratio(const JointVector& q, const JointVector& qd) noexcept;

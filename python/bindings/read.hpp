@@ -26,7 +26,7 @@ struct PyNearest {
 };
 
 /// Bounds in words.
-inline constexpr const char* kBoundsDemand = "a Clearance and TaskBounds in a sequence";
+inline constexpr const char* kBoundsDemand = "a Clearance, TaskBounds and TorqueBounds in a sequence";
 
 /// The bounds of an arm from a sequence of fpbm_cpp.Clearance, at most one, and fpbm_cpp.TaskBounds. Throws
 /// std::invalid_argument if a bound does not fit the arm.

@@ -45,6 +45,7 @@ from .paths import *
 from .robots import *
 from .schemes import *
 from .task_bounds import TaskBounds
+from .torque_bounds import TorqueBounds
 from .tasks import *
 from .tuning import TuneInterrupted, Tuning, tune
 from .viewer import servo, view
@@ -54,7 +55,7 @@ __all__ += ["Comparison", "comparison", "fastest", "servo", "view"]
 __all__ += ["Capsule", "Clearance", "Cuboid", "HalfSpace", "Nearest"]
 __all__ += ["InverseKinematics", "PathFailure", "Posture", "Postures", "StartPosture", "start_posture"]
 __all__ += ["Kinematics", "Limiter", "PathFollower", "SaturatedMotion", "Status", "TargetFilter", "Tick"]
-__all__ += ["SaturatedLevels", "TaskBounds", "Tracker", "failed", "saturate"]
+__all__ += ["SaturatedLevels", "TaskBounds", "TorqueBounds", "Tracker", "failed", "saturate"]
 __all__ += ["MAX_DOF", "ParameterError", "ResolutionError", "SweepInterrupted", "TuneInterrupted", "UrdfWarning"]
 __all__ += ["__version__", "rotation", "rotation_vector"]
 __all__ += arms.__all__ + joints.__all__ + paths.__all__ + robots.__all__ + schemes.__all__ + tasks.__all__

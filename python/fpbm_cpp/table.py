@@ -27,6 +27,7 @@ from .robots import ROBOTS, Robot
 from .schemes import SCHEMES
 from .task_bounds import TaskBounds
 from .tasks import TASKS, AxisTask, PositionTask, Stack, Task
+from .torque_bounds import TorqueBounds
 
 Makers = Mapping[str, Callable[..., Any]]
 EVERY_PATH: Makers = {**PATHS, PathSequence.kind: PathSequence}
@@ -39,12 +40,14 @@ KINDS: Makers = {
     JointLimits.kind: JointLimits,
     Clearance.kind: Clearance,
     TaskBounds.kind: TaskBounds,
+    TorqueBounds.kind: TorqueBounds,
 }
 
-BOUNDS: Makers = {TaskBounds.kind: TaskBounds}
+BOUNDS: Makers = {TaskBounds.kind: TaskBounds, TorqueBounds.kind: TorqueBounds}
 
 # Tables within other tables, by their keys.
 WITHIN: dict[Any, Any] = {
+    (TorqueBounds, "lighter"): ROBOTS,
     (TaskBounds, "task"): {each.kind: each for each in (PositionTask, AxisTask)},
     (TreeJoint, "joint"): Joint,
     (AtSpeed, "path"): EVERY_PATH,
