@@ -74,8 +74,8 @@ struct LinkPairs {
     for (int i = 1; i <= robot.joints(); ++i) set(i, &Pair_::carried_mass, get(i, &Pair_::mass));
     for (int i = robot.joints(); i > 0; --i) {
       const int parent = robot.parent(i);
-      if (parent > 0)
-        set(parent, &Pair_::carried_mass, get(parent, &Pair_::carried_mass) + get(i, &Pair_::carried_mass));
+      if (parent == 0) continue;
+      set(parent, &Pair_::carried_mass, get(parent, &Pair_::carried_mass) + get(i, &Pair_::carried_mass));
     }
   }
 
