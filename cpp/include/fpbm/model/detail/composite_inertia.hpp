@@ -83,12 +83,19 @@ template <bool kTree, int N, typename Scalar, int Joints>
     const JointBits moving = kTree ? robot.moved_by(static_cast<int>(j) + 1) : joint_bit(j) | (joint_bit(j) - 1);
     Scalar* const to = &M.coeffRef(0, j);
     for (Eigen::Index i = 0; i <= j; i += 2) {
-      const auto [first, second] = std::pair{(moving >> i & 1U) != 0, (moving >> i & 2U) != 0};
-      if (!first && !second) continue;
+      const JointBits pair = moving >> i & 3U;
+      if (pair == 0) continue;
       const Screw& s = screws[static_cast<std::size_t>(i / 2)];
       const Two entries = dot(s.linear, linear) + dot(s.angular, angular);
-      if (first) to[i] = M.coeffRef(j, i) = entries.first();
-      if (second) to[i + 1] = M.coeffRef(j, i + 1) = entries.second();
+      if (pair == 3) {
+        entries.store(to + i);
+        M.coeffRef(j, i) = entries.first();
+        M.coeffRef(j, i + 1) = entries.second();
+      } else if (pair == 1) {
+        to[i] = M.coeffRef(j, i) = entries.first();
+      } else {
+        to[i + 1] = M.coeffRef(j, i + 1) = entries.second();
+      }
     }
     const Two& rotor = links[static_cast<std::size_t>(j / 2)].rotor_inertia;
     to[j] += j % 2 == 0 ? rotor.first() : rotor.second();
