@@ -166,11 +166,15 @@ void compare_times(const char* name, const std::string& urdf, const std::vector<
     ours[1].emplace_back(qd.back());
     ours[2].emplace_back(qdd.back());
   }
-  fpbm::Vector<N> torque;
-  fpbm::Matrix<N, N> M;
   const auto update = [&](std::size_t i) { dynamics.robot().update(ours[0][i], ours[1][i], state); };
-  const auto set_torque = [&](std::size_t i) { torque = dynamics.inverse_dynamics(state, ours[2][i]); };
-  const auto set_M = [&](std::size_t) { M = dynamics.mass_matrix(state); };
+  const auto set_torque = [&](std::size_t i) {
+    const fpbm::Vector<N> torque = dynamics.inverse_dynamics(state, ours[2][i]);
+    asm volatile("" : : "r"(&torque) : "memory");
+  };
+  const auto set_M = [&](std::size_t) {
+    const fpbm::Matrix<N, N> M = dynamics.mass_matrix(state);
+    asm volatile("" : : "r"(&M) : "memory");
+  };
   DynamicsPeer peer(urdf, joints);
   const double forward = time_of(update);
   const double ours_torque = time_of([&](std::size_t i) { update(i), set_torque(i); });

@@ -14,6 +14,7 @@
 #include "fpbm/core/lanes.hpp"
 #include "fpbm/inverse/inverse_kinematics.hpp"
 #include "fpbm/limits/level_saturation.hpp"
+#include "fpbm/model/dynamics.hpp"
 #include "fpbm/realtime/stack_tracker.hpp"
 #include "fpbm/simulate/kept_path.hpp"
 #include "fpbm/task/axis_task.hpp"
@@ -337,6 +338,28 @@ TEST(NoAllocation, in_a_rollout_that_fails) {
   const Watched watched = watched_rollout(paper_arm(), path, paper_fpbm(), paper_start().q, [] {});
   EXPECT_EQ(watched.count.total(), 0);
   EXPECT_NE(watched.status, Status::kOk);
+}
+
+/// Dynamics of a robot whose size is known at run time, with a mimic joint, with payloads from 0 to 3 kg.
+TEST(NoAllocation, in_the_dynamics) {
+  Chain<> chain = coupled_panda();
+  for (auto& joint : chain.joints) joint.moved = {1.0, {0.0, 0.0, 0.1}};
+  Dynamics<kOpen> dynamics(chain);
+  Dynamics<kOpen>::State state;
+  Vector<kOpen> q = Vector<kOpen>::Constant(dynamics.dof(), 0.5);
+  double sum = 0.0;
+  const AllocationWatch watch;
+  for (int i = 0; i < kSteps; ++i) {
+    const LinkInertia<> load{0.03 * i, {0.0, 0.0, 0.1}};
+    if (!dynamics.set_payload(Robot<kOpen>::kTip, load)) break;
+    dynamics.robot().update(q, q, state);
+    sum += dynamics.inverse_dynamics(state, q)(0) + dynamics.bias(state)(0) + dynamics.gravity_torque(state)(0);
+    sum += dynamics.mass_matrix(state)(0, 0) + dynamics.kinetic_energy(state) + dynamics.potential_energy(state);
+    q(0) += 0.01;
+  }
+  EXPECT_EQ(watch.count().total(), 0);
+  EXPECT_GT(sum, 0.0);
+  EXPECT_NEAR(dynamics.link(dynamics.robot().joints()).mass, 1.0 + 0.03 * (kSteps - 1), 1e-12);
 }
 
 /// Plants one allocation at each of the 101 samples, and returns the counts of the watches.

@@ -396,7 +396,9 @@ TEST(Dynamics, refuses_what_is_not_physical) {
   expect_refused(with(diagonal(1.0, 3.0, 1.5)),
                  "joint 'j1'.moved.inertia has the principal moments 1, 1.5 and 3: the largest must be at most the sum "
                  "of the others (triangle inequality)");
-  EXPECT_NO_THROW(with(diagonal(0.0, 1.0, 1.0))());  // A rod.
+  EXPECT_NO_THROW(with(diagonal(0.0, 1.0, 1.0))());         // A rod.
+  EXPECT_NO_THROW(with(diagonal(1.234, 1.234, 2.4681))());  // A disc, rounded.
+  expect_refused(with(diagonal(1.234, 1.234, 2.47)), "triangle inequality");
   EXPECT_NO_THROW(with(diagonal(0.0, 0.0, 0.0))());
   const double infinite = std::numeric_limits<double>::infinity();
   expect_refused([&] { Dynamics<3>(tree, Vector<3>(0.0, 0.0, infinite)); }, "gravity[2] = inf: must be finite");

@@ -68,8 +68,8 @@ class AlongTree {
   [[nodiscard, gnu::always_inline]] static Result by_vector(const F& f) noexcept {
     Result result;
     each(Constant<0>{}, Constant<Count>{}, [&](auto k) noexcept {
-      constexpr auto at = static_cast<std::size_t>(decltype(k)::kIndex);
-      result[at] = f(at);
+      constexpr auto kAt = static_cast<std::size_t>(decltype(k)::kIndex);
+      result[kAt] = f(kAt);
     });
     return result;
   }

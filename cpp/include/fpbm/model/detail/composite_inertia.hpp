@@ -40,8 +40,8 @@ template <bool kTree, int N, typename Scalar, int Joints>
     const AxesPair<Scalar> axes(state, i, n);
     const Three<Two> p = load(state.screws.joints(i).point);
     const Three<Two> centre = p + axes * link.centre;
-    const Three<Two> g = axes * link.g;
-    const Three<Two> k = axes * link.k;
+    const Three<Two> u = axes * link.u;
+    const Three<Two> v = axes * link.v;
     const Three<Two> moment = link.mass * centre;
     const Two xx = moment.x * centre.x;
     const Two yy = moment.y * centre.y;
@@ -49,10 +49,10 @@ template <bool kTree, int N, typename Scalar, int Joints>
     // The first moment, and the entries xx, yy, zz and yz, xz, xy of the rotational inertia.
     const auto [h, diagonal, product] =
         sums.inward(i, {moment,
-                        {link.mu + (k.x * k.x - g.x * g.x) + (yy + zz), link.mu + (k.y * k.y - g.y * g.y) + (xx + zz),
-                         link.mu + (k.z * k.z - g.z * g.z) + (xx + yy)},
-                        {k.y * k.z - g.y * g.z - moment.y * centre.z, k.x * k.z - g.x * g.z - moment.x * centre.z,
-                         k.x * k.y - g.x * g.y - moment.x * centre.y}});
+                        {link.mu + (v.x * v.x - u.x * u.x) + (yy + zz), link.mu + (v.y * v.y - u.y * u.y) + (xx + zz),
+                         link.mu + (v.z * v.z - u.z * u.z) + (xx + yy)},
+                        {v.y * v.z - u.y * u.z - moment.y * centre.z, v.x * v.z - u.x * u.z - moment.x * centre.z,
+                         v.x * v.y - u.x * u.y - moment.x * centre.y}});
     const Three<Two>& z = axes.z;
     Screw& s = screws[index];
     s = {cross(p, z), z};
@@ -60,11 +60,11 @@ template <bool kTree, int N, typename Scalar, int Joints>
       s.linear = link.turns * s.linear + (Two(Scalar(1)) - link.turns) * z;
       s.angular = link.turns * z;
     }
-    const auto& [v, w] = s;
-    momenta[index].linear = link.carried_mass * v + cross(w, h);
-    momenta[index].angular = cross(h, v) + Three<Two>{diagonal.x * w.x + product.z * w.y + product.y * w.z,
-                                                      product.z * w.x + diagonal.y * w.y + product.x * w.z,
-                                                      product.y * w.x + product.x * w.y + diagonal.z * w.z};
+    const auto& [linear, w] = s;
+    momenta[index].linear = link.carried_mass * linear + cross(w, h);
+    momenta[index].angular = cross(h, linear) + Three<Two>{diagonal.x * w.x + product.z * w.y + product.y * w.z,
+                                                           product.z * w.x + diagonal.y * w.y + product.x * w.z,
+                                                           product.y * w.x + product.x * w.y + diagonal.z * w.z};
   });
 
   M.resize(robot.joints(), robot.joints());
@@ -83,12 +83,19 @@ template <bool kTree, int N, typename Scalar, int Joints>
     const JointBits moving = kTree ? robot.moved_by(static_cast<int>(j) + 1) : joint_bit(j) | (joint_bit(j) - 1);
     Scalar* const to = &M.coeffRef(0, j);
     for (Eigen::Index i = 0; i <= j; i += 2) {
-      const auto [first, second] = std::pair{(moving >> i & 1U) != 0, (moving >> i & 2U) != 0};
-      if (!first && !second) continue;
+      const JointBits pair = moving >> i & 3U;
+      if (pair == 0) continue;
       const Screw& s = screws[static_cast<std::size_t>(i / 2)];
       const Two entries = dot(s.linear, linear) + dot(s.angular, angular);
-      if (first) to[i] = M.coeffRef(j, i) = entries.first();
-      if (second) to[i + 1] = M.coeffRef(j, i + 1) = entries.second();
+      if (pair == 3) {
+        entries.store(to + i);
+        M.coeffRef(j, i) = entries.first();
+        M.coeffRef(j, i + 1) = entries.second();
+      } else if (pair == 1) {
+        to[i] = M.coeffRef(j, i) = entries.first();
+      } else {
+        to[i + 1] = M.coeffRef(j, i + 1) = entries.second();
+      }
     }
     const Two& rotor = links[static_cast<std::size_t>(j / 2)].rotor_inertia;
     to[j] += j % 2 == 0 ? rotor.first() : rotor.second();

@@ -13,9 +13,9 @@ namespace fpbm {
 
 /// Constants of two joints and of the links that they move, relative to the placements of the joints.
 ///
-/// With the principal moments I₁ ≤ I₂ ≤ I₃ and axes e, the rotational inertia about the centre of mass is μ1 − ggᵀ +
-/// kkᵀ, with μ = I₂, g = √(I₂ − I₁) e₁ and k = √(I₃ − I₂) e₃. The second moments ∫ ρρᵀ dm about the centre of mass are
-/// λ1 + ggᵀ − kkᵀ, with λ = (I₁ + I₃ − I₂)/2. Two vectors need fewer products to rotate than a matrix.
+/// With the principal moments I₁ ≤ I₂ ≤ I₃ and axes e, the rotational inertia about the centre of mass is μ1 − uuᵀ +
+/// vvᵀ, with μ = I₂, u = √(I₂ − I₁) e₁ and v = √(I₃ − I₂) e₃. The second moments ∫ ρρᵀ dm about the centre of mass are
+/// λ1 + uuᵀ − vvᵀ, with λ = (I₁ + I₃ − I₂)/2. Two vectors need fewer products to rotate than a matrix.
 template <typename Scalar>
 struct LinkPair {
   using Two = Pair<Scalar>;
@@ -29,8 +29,8 @@ struct LinkPair {
   Two mu = zero();
   Two twice_lambda = zero();
   Two3 centre{zero(), zero(), zero()};  ///< Centre of mass [m].
-  Two3 g{zero(), zero(), zero()};       ///< [kg^½ m]
-  Two3 k{zero(), zero(), zero()};       ///< [kg^½ m]
+  Two3 u{zero(), zero(), zero()};       ///< [kg^½ m]
+  Two3 v{zero(), zero(), zero()};       ///< [kg^½ m]
 
  private:
   [[nodiscard]] static Two zero() noexcept { return Two(Scalar(0)); }
@@ -68,14 +68,14 @@ struct LinkPairs {
     set(link, &Pair_::mu, moments(1));
     set(link, &Pair_::twice_lambda, moments(0) + moments(2) - moments(1));
     set(link, &Pair_::centre, Scalar(1), inertia.centre.data());
-    set(link, &Pair_::g, std::sqrt(moments(1) - moments(0)), axes.data());
-    set(link, &Pair_::k, std::sqrt(moments(2) - moments(1)), axes.data() + 6);
+    set(link, &Pair_::u, std::sqrt(moments(1) - moments(0)), axes.data());
+    set(link, &Pair_::v, std::sqrt(moments(2) - moments(1)), axes.data() + 6);
     // All sums again: differences of masses would accumulate round-off errors.
     for (int i = 1; i <= robot.joints(); ++i) set(i, &Pair_::carried_mass, get(i, &Pair_::mass));
     for (int i = robot.joints(); i > 0; --i) {
       const int parent = robot.parent(i);
-      if (parent > 0)
-        set(parent, &Pair_::carried_mass, get(parent, &Pair_::carried_mass) + get(i, &Pair_::carried_mass));
+      if (parent == 0) continue;
+      set(parent, &Pair_::carried_mass, get(parent, &Pair_::carried_mass) + get(i, &Pair_::carried_mass));
     }
   }
 

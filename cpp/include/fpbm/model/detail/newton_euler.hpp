@@ -84,11 +84,11 @@ template <bool kTree, int N, typename Scalar, int Joints>
     const Three<Two> a = linear.outward(i, {added})[0];
 
     const Three<Two> to_centre = axes * link.centre;
-    const Three<Two> g = axes * link.g;
-    const Three<Two> k = axes * link.k;
+    const Three<Two> u = axes * link.u;
+    const Three<Two> v = axes * link.v;
     Force& force = forces[static_cast<std::size_t>(pair)];
     force.f = link.mass * (a + A * to_centre);
-    force.n = cross(p + to_centre, force.f) + link.twice_lambda * wd + (cross(g, A * g) - cross(k, A * k));
+    force.n = cross(p + to_centre, force.f) + link.twice_lambda * wd + (cross(u, A * u) - cross(v, A * v));
   });
 
   torques.resize(robot.joints());

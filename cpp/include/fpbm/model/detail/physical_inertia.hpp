@@ -32,14 +32,14 @@ struct PrincipalAxes {
 /// Conditions for the inertia of a link, in the order of the tests.
 enum class InertiaFault : unsigned char { kNone, kNotFinite, kNegativeMass, kNotSymmetric, kNegativeMoment, kTriangle };
 
-/// The first condition that the inertia of a link violates by more than the second half of the digits: an inertia with
-/// 9 decimals, or 4 for float, is accepted.
+/// The first condition that the inertia of a link violates by more than round-off: published inertias have as few as 4
+/// digits, and a radius of gyration below 1 µm is round-off.
 template <typename Scalar>
 [[nodiscard]] InertiaFault fault_of(const LinkInertia<Scalar>& link) noexcept {
   const auto& [mass, centre, inertia] = link;
   if (!std::isfinite(mass) || !is_finite(centre) || !is_finite(inertia)) return InertiaFault::kNotFinite;
   if (mass < Scalar(0)) return InertiaFault::kNegativeMass;
-  const Scalar tolerance = std::sqrt(std::numeric_limits<Scalar>::epsilon()) * largest_magnitude(inertia);
+  const Scalar tolerance = Scalar(1e-4) * largest_magnitude(inertia) + Scalar(1e-12) * mass;
   for (Eigen::Index i = 0; i < 3; ++i) {
     for (Eigen::Index j = 0; j < i; ++j) {
       if (std::abs(inertia.coeff(i, j) - inertia.coeff(j, i)) > tolerance) return InertiaFault::kNotSymmetric;
