@@ -122,18 +122,20 @@ Array mass_matrix(const Model& model, const ArrayLike& q) {
 }
 
 /// A number for one state, an array of shape (K,) for K states.
-py::object scalar(const Array& values) {
-  return values[py::tuple()];
+using Energy = py::typing::Union<py::float_, Array>;
+
+Energy energy(const Array& values) {
+  return py::object(values[py::tuple()]);
 }
 
-py::object kinetic_energy(const Model& model, const ArrayLike& q, const ArrayLike& qd) {
-  return scalar(in_states(model, q, qd, {}, [](const auto& dynamics, const auto& state, auto, double* out) {
+Energy kinetic_energy(const Model& model, const ArrayLike& q, const ArrayLike& qd) {
+  return energy(in_states(model, q, qd, {}, [](const auto& dynamics, const auto& state, auto, double* out) {
     *out = 0.5 * state.qd.dot(dynamics.mass_matrix(state) * state.qd);
   }));
 }
 
-py::object potential_energy(const Model& model, const ArrayLike& q) {
-  return scalar(in_states(model, q, {}, {}, [&](const auto& dynamics, const auto& state, auto, double* out) {
+Energy potential_energy(const Model& model, const ArrayLike& q) {
+  return energy(in_states(model, q, {}, {}, [&](const auto& dynamics, const auto& state, auto, double* out) {
     *out = 0.0;
     for (int link = 1; link <= model.robot.joints(); ++link) {
       const auto& [mass, centre] = model.robot.mass(link);

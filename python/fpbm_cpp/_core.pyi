@@ -139,7 +139,9 @@ class Model:
 
         Raises ParameterError if a drive moves no mass, an inertia is not physical, or an argument has a wrong shape.
         """
-    def kinetic_energy(self, q: numpy.typing.ArrayLike, qd: numpy.typing.ArrayLike) -> typing.Any:
+    def kinetic_energy(
+        self, q: numpy.typing.ArrayLike, qd: numpy.typing.ArrayLike
+    ) -> float | numpy.typing.NDArray[numpy.float64]:
         """
         Kinetic energy 1/2 qd^T M(q) qd [J], rotors included.
 
@@ -160,7 +162,7 @@ class Model:
 
         Raises ParameterError as inverse_dynamics() does.
         """
-    def potential_energy(self, q: numpy.typing.ArrayLike) -> typing.Any:
+    def potential_energy(self, q: numpy.typing.ArrayLike) -> float | numpy.typing.NDArray[numpy.float64]:
         """
         Potential energy of the links in the field of gravity [J], zero for links at the origin of the base frame.
 
