@@ -24,7 +24,7 @@ from fpbm_cpp.capsule import Capsule
 from fpbm_cpp.urdf.capsules import capsules_of
 from fpbm_cpp.urdf.mesh_file import find_mesh
 
-HEADER = Path(__file__).parent.parent / "cpp/include/fpbm/bound/preset_capsules.hpp"
+HEADER = Path(__file__).parent.parent / "cpp/include/fpbm/bound/detail/arm_capsules.hpp"
 GRID = 1e-4  # [m]
 POSTURES = 1000
 MOST_OFF = 1e-3  # [m] or [rad]

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "arrays.hpp"
-#include "fpbm/bound/robot_capsules.hpp"
+#include "fpbm/bound/preset_capsules.hpp"
 #include "read.hpp"
 
 namespace fpbm::bindings {

@@ -9,7 +9,6 @@
 #include <tuple>
 #include <vector>
 
-#include "fpbm/bound/robot_capsules.hpp"
 #include "fpbm/model/detail/robot_presets.hpp"
 #include "fpbm/model/presets.hpp"
 

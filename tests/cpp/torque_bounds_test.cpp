@@ -153,7 +153,7 @@ TEST(TorqueDeviation, bounds_the_torques_between_two_ends) {
 
 struct Motion {
   double payload = 0.0;   ///< [kg]
-  double fraction = 1.0;  ///< Of the efforts.
+  double fraction = 1.0;  ///< Fraction of the efforts that the torques use.
   bool with_jerk = false;
   double tick = 1e-3;
   double lighter = 1.0;  ///< Ratio of the smaller payload to the larger payload.

@@ -35,7 +35,8 @@ BOUND = {
     "empty": "bool empty() const noexcept { return false; }",
     "require": "void require(const fpbm::Vector<7>&) {}",
     "rows": "template <typename Next, typename Rows> void rows(const Next&, Rows&) noexcept {}",
-    "accepts": "template <typename Limits, typename Stop> bool accepts(const Limits&, const fpbm::State<7>&, const Stop&) noexcept { return true; }",
+    "accepts": "template <typename Limits, typename Stop>\n"
+    "bool accepts(const Limits&, const fpbm::State<7>&, const Stop&) noexcept { return true; }",
 }
 GAPS = "template <typename F> void gaps(const fpbm::Vector<7>&, double, const F&) noexcept {}"
 GAPS_PROGRAM = """
@@ -57,7 +58,8 @@ int main() {{
   constexpr auto kLevel = fpbm::Level::kAcceleration;
   using Next = fpbm::NextMotion<kLevel, 7>;
   (void)(bounds.rows(*static_cast<const Next*>(nullptr)).count);
-  (void)bounds.accepts(*static_cast<const fpbm::Limits<kLevel, 7>*>(nullptr), fpbm::State<7>{{}}, fpbm::Stop<kLevel, 7>::at_rest(7));
+  using Limits = fpbm::Limits<kLevel, 7>;
+  (void)bounds.accepts(*static_cast<const Limits*>(nullptr), fpbm::State<7>{{}}, fpbm::Stop<kLevel, 7>::at_rest(7));
 }}
 """
 

@@ -28,7 +28,7 @@ pytest.importorskip("trimesh")
 
 ROOT = Path(__file__).parents[2]
 PRESETS = ("panda", "fr3", "iiwa14", "gen3", "ur5e", "ur10e")  # The presets that have capsules.
-HEADER = ROOT / "cpp/include/fpbm/bound/preset_capsules.hpp"
+HEADER = ROOT / "cpp/include/fpbm/bound/detail/arm_capsules.hpp"
 TOOL = ROOT / "tools/preset_capsules.py"
 NUMBER = r"(-?\d+\.\d{4})"
 POINT = rf"\{{{NUMBER}, {NUMBER}, {NUMBER}\}}"

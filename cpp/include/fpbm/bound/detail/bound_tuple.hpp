@@ -51,7 +51,7 @@ class BoundTuple {
     }
   }
 
-  std::tuple<Each...> each_;
+  std::tuple<Each...> each_;  // NOLINT(readability-identifier-naming): private for users, who see Bounds.
 };
 
 }  // namespace fpbm

@@ -121,7 +121,7 @@ class TorqueCertificate {
   TorqueDeviation<N, Scalar, Joints> deviation_;
   TorqueState<N, Scalar> here_;     ///< At the start of the tick.
   TorqueState<N, Scalar> next_;     ///< At the end of the tick.
-  TorqueState<N, Scalar> ends_[2];  ///< At the ends of the parts of the stop, in turn.
+  TorqueState<N, Scalar> ends_[2];  ///< At the ends of the last two parts of the stop.
   JointVector none_;
   typename Model::State memory_;
   int evaluations_ = 0;

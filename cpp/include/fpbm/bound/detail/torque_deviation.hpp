@@ -52,7 +52,7 @@ class TorqueDeviation {
   void set(const Model& model) noexcept {
     const auto& robot = model.robot();
     AllJoints squares = filled<AllJoints>(robot.joints());  // s² of the joints, at most.
-    AllJoints mass = squares;                               // Of the links that a joint moves.
+    AllJoints mass = squares;                               // Mass of the links that a joint moves.
     for (int link = 1; link <= robot.joints(); ++link) {
       const LinkInertia<Scalar>& body = model.link(link);
       if (!(body.mass > Scalar(0))) continue;

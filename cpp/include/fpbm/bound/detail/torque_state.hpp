@@ -31,7 +31,7 @@ struct TorqueState {
   std::array<Torque, 2> of;
   std::size_t models = 1;
 
-  /// Of no state yet. count: number of models.
+  /// count: number of models. Call set() before any other function.
   TorqueState(Eigen::Index dof, std::size_t count)
       : at{filled<JointVector>(dof, std::numeric_limits<Scalar>::quiet_NaN()), filled<JointVector>(dof)},
         models(count) {}

@@ -9,7 +9,7 @@ template <Level kLevel, int N, typename Scalar = double>
 struct Stop {
   StopPlan<kLevel, N, Scalar> plan;
   StopDisplacement<N, Scalar> displacement;
-  Scalar time;  ///< Duration of the tick and of the stop [s].
+  Scalar time;             ///< Duration of the tick and of the stop [s].
   State<N, Scalar> start;  ///< State after the tick.
 
   /// The stop of an arm at rest.
@@ -21,7 +21,8 @@ struct Stop {
   /// The stop after a tick from a state to another, with the acceleration `last`. fraction: of the bounds on
   /// deceleration.
   [[nodiscard]] static Stop after(const Limits<kLevel, N, Scalar>& limits, const State<N, Scalar>& from,
-                                  const State<N, Scalar>& to, const Vector<N, Scalar>& last, Scalar fraction = Scalar(1)) noexcept {
+                                  const State<N, Scalar>& to, const Vector<N, Scalar>& last,
+                                  Scalar fraction = Scalar(1)) noexcept {
     const StopPlan<kLevel, N, Scalar> plan(limits, to, last, fraction);
     return {plan, plan.displacement(limits, from, to), limits.tick() * (Scalar(1) + plan.ticks_left()), to};
   }

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "fpbm/bound/preset_capsules.hpp"
+#include "fpbm/bound/detail/arm_capsules.hpp"
 #include "fpbm/model/detail/robot_presets.hpp"
 
 namespace fpbm {
