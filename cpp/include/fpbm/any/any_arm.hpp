@@ -117,8 +117,8 @@ class AnyArm {
 
   template <int N>
   [[nodiscard]] static JointLimits<kDof> dynamic(const JointLimits<N>& limits) {
-    return {limits.lower, limits.upper,           limits.velocity,     limits.acceleration,
-            limits.jerk,  limits.velocity_offset, limits.deceleration, limits.continuous};
+    return {limits.lower,           limits.upper,        limits.velocity, limits.acceleration, limits.jerk,
+            limits.velocity_offset, limits.deceleration, limits.effort,   limits.continuous};
   }
 
   std::shared_ptr<const Holder> held_;
