@@ -37,8 +37,9 @@ void require_enough_joints(Eigen::Index dof) {
 struct Arm : Model {
   using Any = std::variant<AnyArm<Position<2>>, AnyArm<Position<3>>>;
 
-  explicit Arm(const JointVector& lengths);
-  explicit Arm(const Chain<>& chain);
+  /// An arm in the plane. chain: the same joints and tip in space.
+  Arm(const JointVector& lengths, const Chain<>& chain, const Vector<3>& gravity_);
+  Arm(const Chain<>& chain, const Vector<3>& gravity_);
 
   Any any;
   std::variant<JointVector, Chain<>> source;  ///< Link lengths [m] of a planar arm, or the chain of an arm in space.
@@ -58,8 +59,8 @@ struct Arm : Model {
 
  private:
   template <typename Source>
-  Arm(const Any& any_, const Source& source_, const Chain<>& chain, bool in_plane)
-      : Model(tree_of(chain), in_plane), any(any_), source(source_) {}
+  Arm(const Any& any_, const Source& source_, const Chain<>& chain, const Vector<3>& gravity_, bool in_plane)
+      : Model(tree_of(chain), gravity_, in_plane), any(any_), source(source_) {}
 
   template <typename Positions>
   static Positions positions(const AnyArm<Positions>&) {

@@ -230,8 +230,8 @@ typename Space::template Point<double> point(const ArrayLike& argument, const ch
   }
 }
 
-/// Limits from any object with lower, upper, velocity and acceleration, and optionally jerk, velocity_offset and
-/// deceleration. Each attribute has one number per joint, not NaN. Throws std::invalid_argument.
+/// Limits from any object with lower, upper, velocity and acceleration, and optionally jerk, velocity_offset,
+/// deceleration and effort. Each attribute has one number per joint, not NaN. Throws std::invalid_argument.
 inline JointLimits<Eigen::Dynamic> joint_limits(const py::object& limits) {
   for (const char* name : {"lower", "upper", "velocity", "acceleration"}) {
     if (!py::hasattr(limits, name)) reject_type(limits, "limits", "JointLimits");
@@ -247,6 +247,7 @@ inline JointLimits<Eigen::Dynamic> joint_limits(const py::object& limits) {
   if (has("jerk")) result.jerk = bound("jerk");
   if (has("velocity_offset")) result.velocity_offset = bound("velocity_offset");
   if (has("deceleration")) result.deceleration = bound("deceleration");
+  if (has("effort")) result.effort = bound("effort");
   return result;
 }
 

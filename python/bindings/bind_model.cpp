@@ -36,9 +36,12 @@ Joint<> joint_of_python(const py::handle& given, const validation::Argument& nam
   joint.type = joint_type(py::cast<std::string>(given.attr("type")), name + ".type");
   joint.placement = transform(array("placement"), (name + ".placement").text().c_str());
   joint.axis = fixed_vector<3>(array("axis"), (name + ".axis").text().c_str());
-  joint.bounds = {number("lower"), number("upper"),           number("velocity"),    number("acceleration"),
-                  number("jerk"),  number("velocity_offset"), number("deceleration")};
+  joint.bounds = {number("lower"), number("upper"),           number("velocity"),     number("acceleration"),
+                  number("jerk"),  number("velocity_offset"), number("deceleration"), number("effort")};
   joint.name = py::cast<std::string>(given.attr("name"));
+  joint.moved = {number("mass"), fixed_vector<3>(array("center"), (name + ".center").text().c_str()),
+                 matrix<Matrix<3, 3>>(array("inertia"), (name + ".inertia").text().c_str(), 3, 3)};
+  joint.drive = {number("rotor_inertia"), number("damping"), number("friction")};
   if (const py::object mimic = given.attr("mimic"); !mimic.is_none()) {
     const auto [index, ratio, offset] = py::cast<std::tuple<int, double, double>>(mimic);
     if (index < 0) validation::fail(name + ".mimic[0]", index, "the index of a joint");
@@ -62,11 +65,18 @@ PlainJoint fields_of(const Joint<>& joint) {
   fields["jerk"] = joint.bounds.jerk;
   fields["velocity_offset"] = joint.bounds.velocity_offset;
   fields["deceleration"] = joint.bounds.deceleration;
+  fields["effort"] = joint.bounds.effort;
+  fields["mass"] = joint.moved.mass;
+  fields["center"] = array_of(joint.moved.centre);
+  fields["inertia"] = array_of(joint.moved.inertia);
+  fields["rotor_inertia"] = joint.drive.rotor_inertia;
+  fields["damping"] = joint.drive.viscous;
+  fields["friction"] = joint.drive.dry;
   fields["name"] = joint.name;
   return fields;
 }
 
-using PlainTreeJoint = py::typing::Tuple<PlainJoint, py::int_, py::float_, Array>;
+using PlainTreeJoint = py::typing::Tuple<PlainJoint, py::int_>;
 using PlainFrame = py::typing::Tuple<py::str, py::int_, Array>;
 
 /// A separate class, from which the Robot of Python is derived.
@@ -74,20 +84,15 @@ struct PyRobot : Model {
   using Model::Model;
 };
 
-LinkMass<> mass_of(double mass, const py::handle& center) {
-  return {mass, fixed_vector<3>(ArrayLike(py::reinterpret_borrow<py::object>(center)), "center")};
-}
-
 /// A tree from objects with the attributes of fpbm_cpp.TreeJoint and fpbm_cpp.NamedFrame.
 Tree<> tree_of_python(const py::typing::List<py::object>& joints, const py::typing::List<py::object>& frames,
                       double base_mass, const ArrayLike& base_center) {
   Tree<> tree;
-  tree.base = mass_of(base_mass, base_center);
+  tree.base = {base_mass, fixed_vector<3>(base_center, "base_center")};
   for (const py::handle each : joints) {
     const auto i = static_cast<Eigen::Index>(tree.joints.size());
-    tree.joints.push_back({joint_of_python(each.attr("joint"), validation::element("joints", i)),
-                           py::cast<int>(each.attr("parent")),
-                           mass_of(py::cast<double>(each.attr("mass")), each.attr("center"))});
+    tree.joints.push_back(
+        {joint_of_python(each.attr("joint"), validation::element("joints", i)), py::cast<int>(each.attr("parent"))});
   }
   for (const py::handle each : frames) {
     tree.frames.push_back({py::cast<std::string>(each.attr("name")), py::cast<int>(each.attr("link")),
@@ -149,8 +154,7 @@ Array center_of_mass_at(const PyRobot& model, const ArrayLike& q) {
   return array_of(center);
 }
 
-/// Joints of a preset, each with the number of the parent link, and mass and centre of mass of the child link; frames;
-/// mass and centre of mass of the base.
+/// Joints of a preset, each with the number of the parent link; frames; mass and centre of mass of the base.
 py::typing::Tuple<py::typing::List<PlainTreeJoint>, py::typing::List<PlainFrame>, py::float_, Array> robot_preset(
     const std::string& name) {
   for (const presets::RobotPreset& known : presets::kRobots) {
@@ -159,7 +163,7 @@ py::typing::Tuple<py::typing::List<PlainTreeJoint>, py::typing::List<PlainFrame>
     py::list frames;
     const Tree<> tree = known.tree();
     for (const auto& [joint, parent] : tree.joints) {
-      joints.append(py::make_tuple(fields_of(joint), parent, joint.moved.mass, array_of(joint.moved.centre)));
+      joints.append(py::make_tuple(fields_of(joint), parent));
     }
     for (const auto& [frame, link, offset] : tree.frames) frames.append(py::make_tuple(frame, link, array_of(offset)));
     return py::make_tuple(joints, frames, tree.base.mass, array_of(tree.base.centre));
@@ -177,6 +181,7 @@ py::typing::Dict<py::str, Array> bounds_of(const Model& model) {
   bounds["jerk"] = array_of(limits.jerk);
   bounds["velocity_offset"] = array_of(limits.velocity_offset);
   bounds["deceleration"] = array_of(limits.deceleration);
+  bounds["effort"] = array_of(limits.effort);
   return bounds;
 }
 
@@ -218,10 +223,11 @@ void bind_robot(py::module_& m) {
   const auto task = py::arg("task") = "pose";
   py::class_<PyRobot, Model>(m, "Robot", "The compiled part of a robot.")
       .def(py::init([](const py::typing::List<py::object>& joints, const py::typing::List<py::object>& frames,
-                       double base_mass, const ArrayLike& base_center) {
-             return PyRobot(tree_of_python(joints, frames, base_mass, base_center));
+                       double base_mass, const ArrayLike& base_center, const ArrayLike& gravity) {
+             return PyRobot(tree_of_python(joints, frames, base_mass, base_center),
+                            fixed_vector<3>(gravity, "gravity_vector"));
            }),
-           py::arg("joints"), py::arg("frames"), py::arg("base_mass"), py::arg("base_center"))
+           py::arg("joints"), py::arg("frames"), py::arg("base_mass"), py::arg("base_center"), py::arg("gravity"))
       .def(
           "forward",
           [](const PyRobot& model, const ArrayLike& q, const std::string& frame) {
@@ -376,11 +382,13 @@ void bind_model(py::module_& m) {
 
   const auto task = py::arg("task") = "position";
   py::class_<Arm, Model>(m, "Arm", "The compiled part of an arm: planar, from link lengths, or in space, from joints.")
-      .def(py::init([](const ArrayLike& lengths) { return Arm(joint_vector(lengths, "lengths")); }), py::arg("lengths"))
-      .def(py::init([](const py::typing::List<py::object>& joints, const ArrayLike& tip) {
-             return Arm(chain_of(joints, tip));
+      .def(py::init([](const py::typing::List<py::object>& joints, const ArrayLike& tip, const ArrayLike& gravity,
+                       const OptionalArray& lengths) {
+             const Chain<> chain = chain_of(joints, tip);
+             const auto g = fixed_vector<3>(gravity, "gravity_vector");
+             return lengths ? Arm(joint_vector(*lengths, "lengths"), chain, g) : Arm(chain, g);
            }),
-           py::arg("joints"), py::arg("tip"))
+           py::arg("joints"), py::arg("tip"), py::arg("gravity"), py::arg("lengths") = py::none())
       .def("forward", &forward, py::arg("q"),
            "Tip f(q) in the base frame [m]: for a planar arm, a position, shape (2,); for an arm in space, a\n"
            "homogeneous matrix, shape (4, 4). q: shape (n,) [rad].")

@@ -7,6 +7,7 @@ namespace py = pybind11;
 namespace fpbm::bindings {
 
 void bind_model(py::module_& m);
+void bind_dynamics(py::module_& m);
 void bind_path(py::module_& m);
 void bind_scheme(py::module_& m);
 void bind_limits(py::module_& m);

@@ -72,9 +72,26 @@ class Model:
     """
     The compiled part of a robot or an arm: its joints and frames.
     """
+    def bias(self, q: numpy.typing.ArrayLike, qd: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torques for a motion without acceleration: h(q, qd) = C(q, qd) qd + g(q) + damping qd, shape (n,) [Nm].
+
+        h = inverse_dynamics(q, qd, 0): Coriolis and centrifugal torques, gravity and viscous friction. q, qd: shape (n,)
+        [rad], [rad/s], or (K, n) for a result of shape (K, n).
+
+        Raises ParameterError as inverse_dynamics() does.
+        """
     def bounds(self) -> dict[str, numpy.typing.NDArray[numpy.float64]]:
         """
         Bounds of the joints by name, as in JointLimits, shape (n,) each; infinite if there is no bound.
+        """
+    def gravity(self, q: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torques that hold the robot at rest: g(q) = inverse_dynamics(q, 0, 0), shape (n,) [Nm].
+
+        g is the gradient of potential_energy(). q: shape (n,) [rad], or (K, n) for a result of shape (K, n).
+
+        Raises ParameterError as inverse_dynamics() does.
         """
     def inverse(
         self,
@@ -110,6 +127,47 @@ class Model:
         """
         Distinct postures for a target, sorted by rank: InverseKinematics(arm, ...).solve_all(target, start, count, rank=rank).
         """
+    def inverse_dynamics(
+        self, q: numpy.typing.ArrayLike, qd: numpy.typing.ArrayLike, qdd: numpy.typing.ArrayLike
+    ) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torques of the drives for a motion: M(q) qdd + h(q, qd), shape (n,) [Nm], [N] for prismatic joints.
+
+        By the recursive Newton-Euler algorithm (Featherstone, Rigid Body Dynamics Algorithms, 2008, table 5.1), with the
+        inertia of the rotors and viscous friction, without dry friction. q, qd, qdd: shape (n,) [rad], [rad/s], [rad/s^2], or
+        K rows, shape (K, n), for a result of shape (K, n).
+
+        Raises ParameterError if a drive moves no mass, an inertia is not physical, or an argument has a wrong shape.
+        """
+    def kinetic_energy(self, q: numpy.typing.ArrayLike, qd: numpy.typing.ArrayLike) -> typing.Any:
+        """
+        Kinetic energy 1/2 qd^T M(q) qd [J], rotors included.
+
+        q, qd: shape (n,) [rad], [rad/s], or (K, n) for a result of shape (K,).
+
+        Raises ParameterError as inverse_dynamics() does.
+        """
+    def locate(self, frame: str) -> tuple[int, numpy.typing.NDArray[numpy.float64]]:
+        """
+        Number of the link of a frame, and the frame in the frame of the link, shape (4, 4).
+        """
+    def mass_matrix(self, q: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Joint-space inertia matrix M(q), shape (n, n) [kg m^2], symmetric and positive definite.
+
+        By the composite-rigid-body algorithm (Featherstone 2008, table 6.2). M is the derivative of inverse_dynamics() with
+        respect to qdd, and includes the inertia of the rotors. q: shape (n,) [rad], or (K, n) for a result of shape (K, n, n).
+
+        Raises ParameterError as inverse_dynamics() does.
+        """
+    def potential_energy(self, q: numpy.typing.ArrayLike) -> typing.Any:
+        """
+        Potential energy of the links in the field of gravity [J], zero for links at the origin of the base frame.
+
+        The base does not count. q: shape (n,) [rad], or (K, n) for a result of shape (K,).
+
+        Raises ParameterError as inverse_dynamics() does.
+        """
     @property
     def dof(self) -> int:
         """
@@ -131,6 +189,7 @@ class Robot(Model):
         frames: list[typing.Any],
         base_mass: typing.SupportsFloat | typing.SupportsIndex,
         base_center: numpy.typing.ArrayLike,
+        gravity: numpy.typing.ArrayLike,
     ) -> None: ...
     def center_of_mass(self, q: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -206,10 +265,13 @@ class Arm(Model):
     """
     The compiled part of an arm: planar, from link lengths, or in space, from joints.
     """
-    @typing.overload
-    def __init__(self, lengths: numpy.typing.ArrayLike) -> None: ...
-    @typing.overload
-    def __init__(self, joints: list[typing.Any], tip: numpy.typing.ArrayLike) -> None: ...
+    def __init__(
+        self,
+        joints: list[typing.Any],
+        tip: numpy.typing.ArrayLike,
+        gravity: numpy.typing.ArrayLike,
+        lengths: numpy.typing.ArrayLike | None = None,
+    ) -> None: ...
     def forward(self, q: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
         """
         Tip f(q) in the base frame [m]: for a planar arm, a position, shape (2,); for an arm in space, a
@@ -1164,7 +1226,7 @@ def processor_kinds() -> list[str]: ...
 def robot_preset(
     name: str,
 ) -> tuple[
-    list[tuple[dict[str, typing.Any], int, float, numpy.typing.NDArray[numpy.float64]]],
+    list[tuple[dict[str, typing.Any], int]],
     list[tuple[str, int, numpy.typing.NDArray[numpy.float64]]],
     float,
     numpy.typing.NDArray[numpy.float64],

@@ -4,33 +4,36 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import replace
-from functools import cached_property
-from typing import Any, ClassVar
+from dataclasses import KW_ONLY, replace
+from typing import TYPE_CHECKING, Any, ClassVar
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from ._core import PRESETS, dh, preset
 from ._core import Arm as CoreArm
-from ._types import ArrayField
+from ._types import Array, ArrayField, OptionalArrayField
 from .errors import not_one_of, require
+from .inertia import Inertia
 from .joints import FRAME, IDENTITY, Joint, JointLimits, joint_table, limited, require_length
-from .parameter import POSITIVE, Data, Parameter, data, from_file, parameter
+from .mechanism import Mechanism
+from .parameter import NOT_NEGATIVE, POSITIVE, Parameter, data, from_file, parameter, renamed
 from .shown import html_table
 from .urdf.chain import read_urdf
 
 __all__ = ["Arm", "PlanarArm", "SerialArm"]
 
 
-class Arm(Data, CoreArm):
+class Arm(Mechanism, CoreArm):
     """A robot arm of n joints."""
 
     kind: ClassVar[str]
 
-    @cached_property
-    def limits(self) -> JointLimits:
-        """Bounds of the joints' motion."""
-        return JointLimits(**self.bounds())
+    if TYPE_CHECKING:
+
+        @property
+        def joints(self) -> Sequence[Joint]:
+            """Joints from base to tip."""
 
 
 @data
@@ -40,17 +43,48 @@ class PlanarArm(Arm):
     The tip is f(q) = sum_i l_i (cos th_i, sin th_i) with th_i = q_1 + ... + q_i. Joint angles [rad] are relative to
     the previous link; the first angle is relative to the x axis of the base frame. The pose of the tip is (x, y, th_n).
 
-    Raises ParameterError if a length is out of range, or if there are too few or too many lengths.
+    joints are the joints in space. The frame of a link has its origin at the joint, and x along the link. Gravity acts
+    along -z, across the plane, and has no effect; with_gravity((0, -9.81, 0)) is for a vertical plane.
+
+    Raises ParameterError if a number is out of range, or if there are too few or too many lengths.
     """
 
     kind: ClassVar[str] = "planar"
     lengths: ArrayField = parameter("Link lengths, 2 to MAX_DOF of them.", POSITIVE, shape="(n,)", unit="m")
+    masses: OptionalArrayField = parameter(
+        "Masses of the links, which are uniform rods without centers and inertias; default: links without mass.",
+        NOT_NEGATIVE,
+        default=None,
+        shape="(n,)",
+        unit="kg",
+    )
+    _: KW_ONLY
+    centers: OptionalArrayField = parameter(
+        "Centres of mass of the links, in their frames; default: the middles.", default=None, shape="(n, 3)", unit="m"
+    )
+    inertias: OptionalArrayField = parameter(
+        "Rotational inertias of the links about their centres of mass; default: uniform rods.",
+        default=None,
+        shape="(n, 3, 3)",
+        unit="kg m^2",
+    )
 
     def _repr_html_(self) -> str:
         return html_table("PlanarArm", ["link", "length [m]"], enumerate(self.lengths, 1))
 
     def _finish(self) -> None:
-        CoreArm.__init__(self, self.lengths)
+        for name in ("masses", "centers", "inertias"):
+            if (values := getattr(self, name)) is not None:
+                require_length(name, values, len(self.lengths))
+        joints, tip = _in_space(self)
+        object.__setattr__(self, "joints", joints)
+        CoreArm.__init__(self, list(joints), tip, self.gravity_vector, self.lengths)
+
+    def _carrying(self, link: int, body: Inertia) -> PlanarArm:
+        joints = list(self.joints)
+        joints[link - 1] = joints[link - 1].carrying(body)
+        fields = {"masses": "mass", "centers": "center", "inertias": "inertia"}
+        return self._with(**{field: [getattr(each, name) for each in joints] for field, name in fields.items()})
 
 
 @data
@@ -72,7 +106,12 @@ class SerialArm(Arm):
             require("joints", joint, Joint, "a Joint", index=i)
         named = tuple(j if j.name else replace(j, name=f"joint_{i}") for i, j in enumerate(self.joints, 1))
         object.__setattr__(self, "joints", named)
-        CoreArm.__init__(self, list(named), self.tip)
+        CoreArm.__init__(self, list(named), self.tip, self.gravity_vector)
+
+    def _carrying(self, link: int, body: Inertia) -> SerialArm:
+        joints = list(self.joints)
+        joints[link - 1] = joints[link - 1].carrying(body)
+        return self._with(joints=joints)
 
     def __str__(self) -> str:
         return f"<SerialArm of {self.dof} joints, {self.joints[0].name} to {self.joints[-1].name}>"
@@ -98,6 +137,7 @@ class SerialArm(Arm):
         velocity: ArrayLike | None = None,
         acceleration: ArrayLike | None = None,
         jerk: ArrayLike | None = None,
+        effort: ArrayLike | None = None,
         names: Sequence[str] | None = None,
         base: ArrayLike | None = None,
         tip: ArrayLike | None = None,
@@ -114,15 +154,17 @@ class SerialArm(Arm):
             the joint is prismatic.
         convention : str
             'classic' or 'modified'.
-        types, lower, upper, velocity, acceleration, jerk, names : array_like, shape (n,), optional
-            As in Joint: 'revolute' (default), 'continuous' or 'prismatic'; bounds of the motion, one number for all
-            joints or an array; names.
+        types, lower, upper, velocity, acceleration, jerk, effort, names : array_like, shape (n,), optional
+            As in Joint: 'revolute' (default), 'continuous' or 'prismatic'; bounds, one number for all joints or an
+            array; names.
         base, tip : array_like, shape (4, 4), optional
             Frame 0 in the base frame, and the frame of the tip in frame n.
         """
         rows = Parameter(name="table", shape="(n, 4)").check(table)
         joints, end = dh(rows, convention, ["revolute"] * len(rows) if types is None else list(types))
-        limits = JointLimits(lower=lower, upper=upper, velocity=velocity, acceleration=acceleration, jerk=jerk)
+        limits = JointLimits(
+            lower=lower, upper=upper, velocity=velocity, acceleration=acceleration, jerk=jerk, effort=effort
+        )
         if names is not None:
             require_length("names", names, len(rows))
             joints = [{**joint, "name": name} for joint, name in zip(joints, names)]
@@ -133,12 +175,22 @@ class SerialArm(Arm):
 
     @classmethod
     def from_urdf(
-        cls, path: str | os.PathLike[str], tip: str, base: str | None = None, *, limits: JointLimits | None = None
+        cls,
+        path: str | os.PathLike[str],
+        tip: str,
+        base: str | None = None,
+        *,
+        limits: JointLimits | None = None,
+        srdf: str | os.PathLike[str] | None = None,
     ) -> SerialArm:
         """Arm between two links of a URDF file: base (default: the root) and tip. Expand xacro first.
 
-        Fixed joints become part of the frames. Bounds, names and mimic joints are kept. A velocity, acceleration or
-        jerk that is 0 or missing is not bounded. limits replaces bounds of the file, before the bounds are checked.
+        Fixed joints become part of the frames. Bounds, names, mimic joints and friction are kept. A velocity,
+        acceleration, jerk or effort that is 0 or missing is not bounded. limits replaces bounds of the file, before
+        the bounds are checked. srdf is an SRDF file, whose <rotor_params> are the inertias of the rotors.
+
+        The inertia of a link includes all links that move with the link: links behind fixed joints, and also links
+        beyond the tip and on side branches, for example a gripper, whose joints are at zero.
 
         A UrdfWarning is issued if lower = upper: the joint is fixed; if the range of a mimic joint leaves no range for
         its leader: the range of the mimic joint is ignored; and if the leader of a mimic joint is not a moving joint
@@ -147,7 +199,7 @@ class SerialArm(Arm):
         Raises ValueError if the file is not a valid URDF or has no chain between the links, OSError if the file cannot
         be read.
         """
-        return cls(*read_urdf(path, tip, base, limits))
+        return cls(*read_urdf(path, tip, base, limits, srdf))
 
     @classmethod
     def preset(cls, name: str) -> SerialArm:
@@ -158,8 +210,23 @@ class SerialArm(Arm):
         return cls([Joint(**joint) for joint in joints], tip)
 
 
+def _in_space(arm: PlanarArm) -> tuple[tuple[Joint, ...], Array]:
+    """The joints of a planar arm in space, about z at the starts of the links, and the frame of the tip."""
+    joints = []
+    place = np.eye(4)
+    for i, length in enumerate(arm.lengths):
+        mass = 0.0 if arm.masses is None else arm.masses[i]
+        center = (length / 2, 0, 0) if arm.centers is None else arm.centers[i]
+        rod = np.diag([0.0, 1.0, 1.0]) * mass * length**2 / 12
+        inertia = rod if arm.inertias is None else arm.inertias[i]
+        joints.append(Joint(placement=place, name=f"joint_{i + 1}", mass=mass, center=center, inertia=inertia))
+        place = np.eye(4)
+        place[0, 3] = length
+    return tuple(joints), place
+
+
 def _frame(name: str, value: ArrayLike) -> Any:
-    return replace(FRAME, name=name).check(value)
+    return renamed(name, value, FRAME)
 
 
 # Constructors of arms, by the kind in a table.

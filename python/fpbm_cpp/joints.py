@@ -12,26 +12,30 @@ import numpy as np
 from ._core import Model as CoreModel
 from ._types import ArrayField, FilledArrayField
 from .errors import wrong
+from .inertia import Inertia, joined
 from .parameter import NOT_NEGATIVE, Data, Parameter, data, parameter
 from .shown import html_table, number
 
 __all__ = ["Joint", "JointLimits", "NamedFrame", "TreeJoint"]
 
 NO_BOUNDS = {"lower": -inf, "upper": inf, "velocity": inf, "acceleration": inf, "jerk": inf}
-NO_BOUNDS |= {"velocity_offset": 0.0, "deceleration": inf}
+NO_BOUNDS |= {"velocity_offset": 0.0, "deceleration": inf, "effort": inf}
 IDENTITY = tuple(map(tuple, np.eye(4).tolist()))
 BOUND = Parameter(shape="(n,) or ()", infinite=True)
 FRAME = Parameter(shape="(4, 4)", unit="m")
 CENTER = Parameter(shape="(3,)", unit="m")
+INERTIA = Parameter(shape="(3, 3)", unit="kg m^2")
 
 
 @data
 class JointLimits(Data):
-    """Bounds of the motion of each joint; infinity means no bound. For a prismatic joint, read m instead of rad.
+    """Bounds of the motion and of the torque of each joint; infinity means no bound.
+
+    For a prismatic joint, read m instead of rad and N instead of Nm.
 
     A number applies to all joints. If lower, upper, velocity or acceleration is missing, the limits change the limits
-    of an arm: each missing field is the field of the arm. Otherwise, a missing jerk means no bound, and a missing
-    velocity_offset or deceleration no braking envelope.
+    of an arm: each missing field is the field of the arm. Otherwise, a missing jerk or effort means no bound, and a
+    missing velocity_offset or deceleration no braking envelope.
 
     Raises ParameterError if a bound is not a number, or the lengths of the arrays differ.
     """
@@ -52,6 +56,9 @@ class JointLimits(Data):
         unit="rad/s",
     )
     deceleration: FilledArrayField = parameter("See velocity_offset.", BOUND, default=None, unit="rad/s^2")
+    effort: FilledArrayField = parameter(
+        "Largest torques, or forces, of the drives, in both directions.", BOUND, default=None, unit="Nm"
+    )
 
     def _finish(self) -> None:
         given = self.given
@@ -89,7 +96,11 @@ class JointLimits(Data):
 
 @data
 class Joint(Data):
-    """One joint of a chain. For a prismatic joint, read m instead of rad."""
+    """One joint of a chain, and the inertia of the link that the joint moves.
+
+    For a prismatic joint, read m instead of rad, N instead of Nm, and kg instead of kg m^2 for the rotor. The frame of
+    the link is the frame of the joint after the joint's motion.
+    """
 
     type: str = parameter("Type of the joint.", default="revolute", choices=("revolute", "continuous", "prismatic"))
     placement: ArrayField = parameter(
@@ -116,25 +127,40 @@ class Joint(Data):
         "leader.",
         default=None,
     )
+    effort: float = parameter("Largest torque, in both directions.", default=inf, infinite=True, unit="Nm")
+    mass: float = parameter("Mass of the link.", NOT_NEGATIVE, default=0.0, unit="kg")
+    center: ArrayField = parameter("Centre of mass of the link, in its frame.", CENTER, default=(0, 0, 0))
+    inertia: ArrayField = parameter(
+        "Rotational inertia of the link about its centre of mass, along the axes of its frame.",
+        INERTIA,
+        default=((0, 0, 0), (0, 0, 0), (0, 0, 0)),
+    )
+    rotor_inertia: float = parameter(
+        "Inertia of the rotor times the square of the gear ratio.", NOT_NEGATIVE, default=0.0, unit="kg m^2"
+    )
+    damping: float = parameter("Viscous friction.", NOT_NEGATIVE, default=0.0, unit="Nm s/rad")
+    friction: float = parameter("Dry friction.", NOT_NEGATIVE, default=0.0, unit="Nm")
 
     def _finish(self) -> None:
         if self.mimic is not None:
             joint, ratio, offset = self.mimic
             object.__setattr__(self, "mimic", (int(joint), float(ratio), float(offset)))
 
+    def carrying(self, body: Inertia) -> Joint:
+        """This joint with a body that is fixed to the link, given in the frame of the link."""
+        mass, center, inertia = joined([Inertia(self.mass, self.center, self.inertia), body])
+        return replace(self, mass=mass, center=center, inertia=inertia)
+
 
 @data
 class TreeJoint(Data):
-    """A joint of a tree, its parent link, and the mass of its child link.
+    """A joint of a tree, and its parent link.
 
     Link 0 is the base. Link i + 1 is the child of joint i; its frame is the frame of joint i after the joint's motion.
     """
 
     joint: Joint = parameter("The joint, placed in the frame of the parent link.")
     parent: int = parameter("Number of the parent link, at most the index of the joint.", default=0)
-    _: KW_ONLY
-    mass: float = parameter("Mass of the child link.", NOT_NEGATIVE, default=0.0, unit="kg")
-    center: ArrayField = parameter("Centre of mass of the child link, in its frame.", CENTER, default=(0, 0, 0))
 
 
 @data
@@ -182,7 +208,8 @@ def require_length(name: str, values: Sized, dof: int) -> None:
 
 def joint_table(caption: str, names: Sequence[str], types: Sequence[str], limits: JointLimits) -> str:
     """A row for each joint, with its type and its bounds, in HTML."""
-    headings = ["joint", "type", "lower", "upper", "velocity", "acceleration", "jerk"]
-    bounds = zip(limits.lower, limits.upper, limits.velocity, limits.acceleration, limits.jerk)
+    bounded = ("lower", "upper", "velocity", "acceleration", "jerk", "effort")
+    headings = ["joint", "type", *bounded]
+    bounds = zip(*(getattr(limits, name) for name in bounded))
     rows = [[name, kind, *map(number, each)] for name, kind, each in zip(names, types, bounds)]
     return html_table(caption.strip("<>"), headings, rows)

@@ -124,6 +124,11 @@ def _fits(shape: tuple[int, ...], required: str) -> bool:
     )
 
 
+def renamed(name: str, value: Any, like: Parameter) -> Any:
+    """A checked argument of a function, as a parameter. Raises ParameterError with the name of the argument."""
+    return replace(like, name=name, type=like.type if like.shape else float).check(value)
+
+
 POSITIVE = Parameter(low=0.0, open_low=True)
 NOT_NEGATIVE = Parameter(low=0.0)
 ANY = Parameter()

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, replace
-from functools import cached_property
 from typing import ClassVar
 
 from numpy.typing import ArrayLike
@@ -15,8 +14,10 @@ from ._core import Robot as CoreRobot
 from ._types import ArrayField
 from .arms import ARMS, Arm, SerialArm
 from .errors import not_one_of, require, wrong
+from .inertia import Inertia
 from .joints import CENTER, IDENTITY, Joint, JointLimits, NamedFrame, TreeJoint, joint_table
-from .parameter import NOT_NEGATIVE, Data, Parameter, data, from_file, parameter
+from .mechanism import Mechanism
+from .parameter import NOT_NEGATIVE, Parameter, data, from_file, parameter, renamed
 from .urdf.chain import read_tree
 
 __all__ = ["Robot"]
@@ -25,7 +26,7 @@ PLACE = Parameter(shape="(4, 4)", unit="m")
 
 
 @data
-class Robot(Data, CoreRobot):
+class Robot(Mechanism, CoreRobot):
     """A tree of revolute, continuous and prismatic joints, which may include mimic joints.
 
     The joint positions, in radians or metres, belong to the joints with a drive, in the order of joints. A Tracker of a
@@ -60,7 +61,8 @@ class Robot(Data, CoreRobot):
             if frame.name in seen:
                 raise wrong("named_frames", frame.name, f" has two frames {frame.name!r}: names must be unique")
             seen.add(frame.name)
-        CoreRobot.__init__(self, list(named), list(self.named_frames), self.base_mass, self.base_center)
+        frames = list(self.named_frames)
+        CoreRobot.__init__(self, list(named), frames, self.base_mass, self.base_center, self.gravity_vector)
 
     def __str__(self) -> str:
         return f"<Robot of {self.dof} joints and {len(self.named_frames)} frames>"
@@ -74,10 +76,11 @@ class Robot(Data, CoreRobot):
         """Names of the frames."""
         return tuple(frame.name for frame in self.named_frames)
 
-    @cached_property
-    def limits(self) -> JointLimits:
-        """Bounds of the joints' motion."""
-        return JointLimits(**self.bounds())
+    def _carrying(self, link: int, body: Inertia) -> Robot:
+        joints = list(self.joints)
+        each = joints[link - 1]
+        joints[link - 1] = replace(each, joint=each.joint.carrying(body))
+        return self._with(joints=joints)
 
     @classmethod
     def from_arms(cls, arms: Mapping[str, SerialArm], placements: Mapping[str, ArrayLike] | None = None) -> Robot:
@@ -89,7 +92,7 @@ class Robot(Data, CoreRobot):
         frames = []
         for name, arm in arms.items():
             first = len(joints)
-            place = replace(PLACE, name=f"placements[{name!r}]").check((placements or {}).get(name, IDENTITY))
+            place = renamed(f"placements[{name!r}]", (placements or {}).get(name, IDENTITY), PLACE)
             for i, joint in enumerate(arm.joints):
                 moved = replace(joint, name=f"{name}_{joint.name}")
                 if i == 0:
@@ -107,7 +110,7 @@ class Robot(Data, CoreRobot):
             raise not_one_of("name", name, ROBOT_PRESETS)
         joints, frames, mass, center = robot_preset(name)
         return cls(
-            [TreeJoint(Joint(**joint), parent, mass=m, center=c) for joint, parent, m, c in joints],
+            [TreeJoint(Joint(**joint), parent) for joint, parent in joints],
             [NamedFrame(*frame) for frame in frames],
             base_mass=mass,
             base_center=center,
@@ -122,11 +125,13 @@ class Robot(Data, CoreRobot):
         locked: Mapping[str, float] | None = None,
         tips: Iterable[str] | None = None,
         limits: JointLimits | None = None,
+        srdf: str | os.PathLike[str] | None = None,
     ) -> Robot:
         """Robot of all joints of a URDF file. Expand xacro first.
 
         Each link of the file is a frame with the name of the link. Fixed joints become part of the frames. Bounds,
-        names and mimic joints are kept. A velocity, acceleration or jerk that is 0 or missing is not bounded.
+        names, mimic joints and friction are kept. A velocity, acceleration, jerk or effort that is 0 or missing is not
+        bounded. The inertia of a link of the robot includes all links of the file that move with the link.
 
         Parameters
         ----------
@@ -144,6 +149,8 @@ class Robot(Data, CoreRobot):
             range that is nearest to 0.
         limits : JointLimits, optional
             Bounds that replace bounds of the file, before the bounds are checked.
+        srdf : path, optional
+            An SRDF file, whose <rotor_params> are the inertias of the rotors.
 
         A UrdfWarning is issued if lower = upper: the joint is fixed; and if the range of a mimic joint leaves no range
         for its leader: the range of the mimic joint is ignored.
@@ -151,7 +158,7 @@ class Robot(Data, CoreRobot):
         Raises ValueError if the file is not a valid URDF or more than MAX_DOF joints move, ParameterError if a locked
         joint does not exist or its position is out of range, OSError if the file cannot be read.
         """
-        return cls(**read_tree(path, base=base, locked=locked or {}, tips=tips, limits=limits))
+        return cls(**read_tree(path, base=base, locked=locked or {}, tips=tips, limits=limits, srdf=srdf))
 
 
 def _preset(name: str) -> Arm | Robot:

@@ -10,14 +10,10 @@ from .joints import Joint
 from .robots import Robot
 from .tasks import FrameTask, PoseTask
 
-HINGE = Joint()  # A joint of a planar arm, which rotates about z.
-
 
 def joints_of(arm: Arm | Robot) -> list[Joint]:
-    """The joints, including mimic joints; for a planar arm, only types and axes are meaningful."""
-    if isinstance(arm, Robot):
-        return [each.joint for each in arm.joints]
-    return list(arm.joints) if isinstance(arm, SerialArm) else [HINGE] * arm.dof
+    """The joints, including mimic joints."""
+    return [each.joint for each in arm.joints] if isinstance(arm, Robot) else list(arm.joints)
 
 
 def joint_labels(arm: Arm | Robot) -> list[str]:

@@ -11,6 +11,7 @@ from dataclasses import replace
 from importlib.util import find_spec
 from math import inf
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -51,9 +52,33 @@ def chain(seed: int, types: Sequence[str], mimics: dict[int, tuple[int, float, f
     rng = np.random.default_rng(seed)
     bounds = {"continuous": (-inf, inf)}
     return [
-        Joint(type, placed(rng), rng.uniform(-2, 2, 3), *bounds.get(type, (-1.5, 2.5)), 3.0, name=name, mimic=mimic)
+        Joint(
+            type,
+            placed(rng),
+            rng.uniform(-2, 2, 3),
+            *bounds.get(type, (-1.5, 2.5)),
+            3.0,
+            name=name,
+            mimic=mimic,
+            **dynamics(rng),
+        )
         for type, name, mimic in zip(types, NASTY, map(mimics.get, range(len(types))))
     ]
+
+
+def dynamics(rng: np.random.Generator) -> dict[str, Any]:
+    """Effort, inertia and friction of a joint."""
+    R, (a, b, c) = Rotation.random(random_state=rng.integers(1 << 30)).as_matrix(), rng.uniform(0, 1, 3)
+    effort, mass, rotor, damping, friction = rng.uniform(0.1, 3, 5)
+    return {
+        "effort": effort,
+        "mass": mass,
+        "center": rng.uniform(-1, 1, 3),
+        "inertia": R @ np.diag([a + b, b + c, c + a]) @ R.T,
+        "rotor_inertia": rotor,
+        "damping": damping,
+        "friction": friction,
+    }
 
 
 TIP = placed(np.random.default_rng(5))
@@ -79,7 +104,7 @@ def coupling(joints: Sequence[Joint]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def bounds_of_drives(joints: Sequence[Joint]) -> np.ndarray:
-    """Lower, upper, velocity, acceleration and jerk of the drives: the bounds of all joints hold within them."""
+    """Lower, upper, velocity, acceleration, jerk, effort of the drives: the bounds of all joints hold within them."""
     A, b = coupling(joints)
     rows = []
     for column in A.T:
@@ -89,7 +114,7 @@ def bounds_of_drives(joints: Sequence[Joint]) -> np.ndarray:
         speeds = [
             min(getattr(j, name) / abs(ratio) for ratio, _, j in moved) for name in ("velocity", "acceleration", "jerk")
         ]
-        rows.append([lower, upper, *speeds])
+        rows.append([lower, upper, *speeds, min(j.effort * abs(ratio) for ratio, _, j in moved)])
     return np.transpose(rows)
 
 
@@ -129,6 +154,7 @@ PROGRAM = """
 #include "serial.hpp"
 
 #include <cstdio>
+#include <fpbm/model/dynamics.hpp>
 
 void print(const char* format, double number) { std::printf(format, number); }
 
@@ -139,8 +165,9 @@ void print(const Eigen::MatrixBase<Derived>& M) {
   }
 }
 
-template <int N, typename Arm>
-void run(const Arm& arm, const std::array<const char*, N>& names, const std::vector<fpbm::LinkCapsule<>>& capsules) {
+template <int N, typename Arm, int Length>
+void run(const Arm& arm, const std::array<const char*, N>& names, const std::vector<fpbm::LinkCapsule<>>& capsules,
+         const fpbm::Chain<double, Length>& chain) {
   for (const auto& [link, capsule, name] : capsules) {
     std::printf("%d ", link), print(capsule.a), print(capsule.b), print("%.17g", capsule.radius);
     std::printf("%c%s%c", 0, name.c_str(), 0);
@@ -148,6 +175,10 @@ void run(const Arm& arm, const std::array<const char*, N>& names, const std::vec
   const auto& limits = arm.limits();
   for (const char* name : names) std::printf("%s%c", name, 0);
   print(limits.lower), print(limits.upper), print(limits.velocity), print(limits.acceleration), print(limits.jerk);
+  print(limits.effort);
+  for (const auto& joint : chain.joints) print("%.17g ", joint.drive.dry);
+  const fpbm::Dynamics<N, double, Length> dynamics(chain);
+  typename fpbm::Dynamics<N, double, Length>::State placed;
   fpbm::State<N> state;
   for (int sample = 0; sample < 20; ++sample) {
     for (int i = 0; i < N; ++i) if (std::scanf("%lf", &state.q(i)) != 1) return;
@@ -155,13 +186,15 @@ void run(const Arm& arm, const std::array<const char*, N>& names, const std::vec
     fpbm::Kinematics<fpbm::Pose, N> kinematics;
     arm.kinematics(state.q, state.qd, kinematics);
     print(kinematics.tip.p), print(kinematics.tip.R), print(kinematics.J), print(kinematics.Jd);
+    dynamics.robot().update(state.q, state.qd, placed);
+    print(dynamics.inverse_dynamics(placed, state.q));
   }
   std::printf("%c", 0);
 }
 
 int main() {
-  run<serial::kDof>(serial::arm(), serial::kJointNames, serial::capsules());
-  run<my::coupled::kDof>(my::coupled::arm(), my::coupled::kJointNames, my::coupled::capsules());
+  run<serial::kDof>(serial::arm(), serial::kJointNames, serial::capsules(), serial::chain());
+  run<my::coupled::kDof>(my::coupled::arm(), my::coupled::kJointNames, my::coupled::capsules(), my::coupled::chain());
 }
 """
 
@@ -192,10 +225,14 @@ def test_header_agrees_with_numpy(tmp_path: Path) -> None:
         expected_names = [joint.name or f"joint_{joints.index(joint) + 1}" for joint in drives]
         assert [next(parts).decode() for _ in drives] == expected_names
         n = len(drives)
-        limits, *samples = np.split(np.array(next(parts).split(), float), 5 * n + np.arange(20) * (12 + 12 * n))
-        np.testing.assert_array_equal(limits.reshape(5, n), bounds_of_drives(joints))
+        first = 6 * n + len(joints)
+        given, *samples = np.split(np.array(next(parts).split(), float), first + np.arange(20) * (12 + 13 * n))
+        np.testing.assert_array_equal(given[: 6 * n].reshape(6, n), bounds_of_drives(joints))
+        assert given[6 * n :].tolist() == [joint.friction for joint in joints]
+        arm = fp.SerialArm(joints, TIP)
         for (q, qd), sample in zip(states[name], samples):
-            p, R, J, Jd = np.split(sample, [3, 12, 12 + 6 * n])
+            p, R, J, Jd, torque = np.split(sample, [3, 12, 12 + 6 * n, 12 + 12 * n])
+            np.testing.assert_allclose(torque, arm.inverse_dynamics(q, qd, q), rtol=1e-12, atol=1e-11)
             tip, jacobian = product_of_exponentials(joints, q)
             _, ahead = product_of_exponentials(joints, q + 1e-30j * qd)
             np.testing.assert_allclose(p, tip[:3, 3], rtol=0, atol=1e-12)
@@ -221,18 +258,18 @@ void print(const Eigen::MatrixBase<Derived>& M) {
   }
 }
 
-void print(const fpbm::LinkMass<>& link) { print(link.mass), print(link.centre); }
-
 int main() {
   const auto tree = t::tree();
   const auto robot = t::robot();
-  print(robot.dof()), print(tree.base);
+  print(robot.dof()), print(tree.base.mass), print(tree.base.centre);
   for (const char* name : t::kJointNames) print(name);
-  for (const auto& [joint, parent, moved] : tree.joints) {
+  for (const auto& [joint, parent] : tree.joints) {
     print(joint.name.data()), print(static_cast<int>(joint.type));
     print(joint.placement.p), print(joint.placement.R), print(joint.axis);
-    print(joint.bounds.lower), print(joint.bounds.upper), print(joint.bounds.velocity);
-    print(joint.mimic.joint), print(joint.mimic.ratio), print(joint.mimic.offset), print(parent), print(moved);
+    print(joint.bounds.lower), print(joint.bounds.upper), print(joint.bounds.velocity), print(joint.bounds.effort);
+    print(joint.mimic.joint), print(joint.mimic.ratio), print(joint.mimic.offset), print(parent);
+    print(joint.moved.mass), print(joint.moved.centre), print(joint.moved.inertia);
+    print(joint.drive.rotor_inertia), print(joint.drive.viscous), print(joint.drive.dry);
   }
   for (const auto& [name, link, offset] : tree.frames) {
     print(name.data()), print(link), print(offset.p), print(offset.R);
@@ -246,10 +283,8 @@ def robot_of_branches() -> fp.Robot:
     rng = np.random.default_rng(4)
     types = ["revolute", "prismatic", "continuous", "revolute", "revolute", "revolute"]
     mimics = {3: (1, 0.5, -0.2), 5: (0, 1.5, 0.1)}
-    joints = [
-        fp.TreeJoint(joint, parent, mass=0.3 * i, center=rng.uniform(-1, 1, 3) if i else (0, 0, 0))
-        for i, (joint, parent) in enumerate(zip(chain(6, types, mimics), (0, 1, 1, 3, 0, 5)))
-    ]
+    joints = list(map(fp.TreeJoint, chain(6, types, mimics), (0, 1, 1, 3, 0, 5)))
+    joints[0] = fp.TreeJoint(replace(joints[0].joint, mass=0, center=(0, 0, 0), inertia=np.zeros((3, 3))))
     frames = [fp.NamedFrame(name, link, placed(rng)) for link, name in enumerate(NASTY[:5])]
     return fp.Robot(joints, [*frames, fp.NamedFrame("as it is", 2)], base_mass=7.0, base_center=[0.1, 0, 1 / 3])
 
@@ -274,7 +309,9 @@ def test_a_tree_equals_the_robot(tmp_path: Path) -> None:
     for each in robot.joints:
         joint, mimic = each.joint, each.joint.mimic or (-1, 1.0, 0.0)
         expected += [kinds.index(joint.type), *joint.placement[:3, 3], *joint.placement[:3, :3].ravel(), *joint.axis]
-        expected += [joint.lower, joint.upper, joint.velocity, *mimic, each.parent, each.mass, *each.center]
+        expected += [joint.lower, joint.upper, joint.velocity, joint.effort, *mimic, each.parent]
+        expected += [joint.mass, *joint.center, *joint.inertia.ravel()]
+        expected += [joint.rotor_inertia, joint.damping, joint.friction]
     for frame in robot.named_frames:
         expected += [frame.link, *frame.offset[:3, 3], *frame.offset[:3, :3].ravel()]
     np.testing.assert_array_equal([float(number) for part in parts[::2] for number in part.split()], expected)

@@ -76,10 +76,10 @@ def both_hands(gains: dict[str, float]) -> list[fp.PoseTask]:
 def test_the_preset_equals_the_robot_of_its_file(robot: fp.Robot) -> None:
     preset = fp.Robot.preset("g1_upper_body")
     assert preset.joint_names == robot.joint_names
-    for bound in ("lower", "upper", "velocity"):
+    for bound in ("lower", "upper", "velocity", "effort"):
         np.testing.assert_array_equal(getattr(preset.limits, bound), getattr(robot.limits, bound))
-    assert preset.base_mass + sum(each.mass for each in preset.joints) == pytest.approx(
-        robot.base_mass + sum(each.mass for each in robot.joints), abs=1e-5
+    assert preset.base_mass + sum(each.joint.mass for each in preset.joints) == pytest.approx(
+        robot.base_mass + sum(each.joint.mass for each in robot.joints), abs=1e-5
     )
     rng = np.random.default_rng(3)
     for _ in range(20):

@@ -19,8 +19,9 @@ from scipy.spatial.transform import Rotation
 import fpbm_cpp as fp
 from fpbm_cpp._types import Array
 from fpbm_cpp.urdf.capsule_fit import distances
-from fpbm_cpp.urdf.chain import pose, read_places
+from fpbm_cpp.urdf.chain import read_places
 from fpbm_cpp.urdf.mesh_file import find_mesh
+from fpbm_cpp.urdf.place import pose
 from fpbm_cpp.urdf.shapes import read_shapes
 
 pytest.importorskip("trimesh")

@@ -97,7 +97,7 @@ def expect_pinocchio(urdf: str, robot: fp.Robot, rng: np.random.Generator, frame
         at, J, Jd = reference.frame(frame)
         found = (robot.forward(q, frame), robot.jacobian(q, frame), robot.jacobian_dot(q, qd, frame))
         worst = max(worst, *(float(np.max(np.abs(one - two))) for one, two in zip(found, (at, J, Jd))))
-    if robot.base_mass + sum(each.mass for each in robot.joints) > 0:
+    if robot.base_mass + sum(each.joint.mass for each in robot.joints) > 0:
         worst = max(worst, float(np.max(np.abs(robot.center_of_mass(q) - reference.center))))
     return worst
 

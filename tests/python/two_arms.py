@@ -12,8 +12,8 @@ import numpy as np
 
 import fpbm_cpp as fp
 from fpbm_cpp._types import Array
-from fpbm_cpp.urdf.chain import pose
 from fpbm_cpp.urdf.mesh_file import find_mesh
+from fpbm_cpp.urdf.place import pose
 
 SIDES = {"left": 1.0, "right": -1.0}
 READY = (0.0, -0.6, 0.0, -2.4, 0.0, 1.8, 0.785, 0.01)

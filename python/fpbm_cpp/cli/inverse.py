@@ -11,7 +11,7 @@ from .._core import PRESETS, rotation
 from .._types import Array
 from ..motion.comparison import columns
 from ..schemes import FPBM
-from ..urdf.chain import pose
+from ..urdf.place import pose
 from .plain import PLACE, Plain, import_viser, read_arm
 
 ROTATIONS = {3: "roll, pitch, yaw about fixed axes [rad]", 4: "quaternion x, y, z, w", 9: "matrix, row by row"}

@@ -25,7 +25,8 @@ typedef typeid typename union unsigned using virtual void volatile wchar_t while
 
 BOUNDS = """\
 /// Bounds are lower, upper [rad] or [m], velocity, acceleration, jerk, and the offset and deceleration of the velocity
-/// bound near an end of the range. A value that is left out means no bound."""
+/// bound near an end of the range; effort [Nm] or [N]. A value that is left out means no bound. moved: mass [kg],
+/// centre [m] and inertia [kg m²] of the link. drive: inertia of the rotor, viscous and dry friction."""
 
 
 def export_header(
@@ -39,11 +40,11 @@ def export_header(
 ) -> str:
     """Text of a C++ header that constructs an arm, so that a program needs neither a parser nor a file.
 
-    The header has kDof, kJointNames, chain() and arm(), which returns an fpbm::CoupledArm if the arm has mimic joints,
-    otherwise an fpbm::SerialArm. The header has capsules() if capsules are given, also for an empty list. name: the
-    namespace, for example 'my::arm'. tip: frame of the tip in the frame of the last joint, shape (4, 4) [m]. source:
-    origin of the arm, for a comment. scalar: 'double', or 'float' for a processor without double. Raises ParameterError
-    if the name is not a valid namespace.
+    The header has kDof, kJointNames, chain(), of which fpbm::Dynamics can also be constructed, and arm(), which returns
+    an fpbm::CoupledArm if the arm has mimic joints, otherwise an fpbm::SerialArm. The header has capsules() if capsules
+    are given, also for an empty list. name: the namespace, for example 'my::arm'. tip: frame of the tip in the frame of
+    the last joint, shape (4, 4) [m]. source: origin of the arm, for a comment. scalar: 'double', or 'float' for a
+    processor without double. Raises ParameterError if the name is not a valid namespace.
     """
     kind = "CoupledArm" if any(joint.mimic for joint in joints) else "SerialArm"
     parts = [_joint_lines(f"  chain.joints[{i}]", joint, scalar) for i, joint in enumerate(joints)]
@@ -69,7 +70,6 @@ def export_tree(robot: Robot, *, name: str, source: str = "", scalar: str = "dou
     for i, each in enumerate(robot.joints):
         parts.append(_joint_lines(f"  tree.joints[{i}].joint", each.joint, scalar))
         parts[-1].append(f"  tree.joints[{i}].parent = {each.parent};")
-        parts[-1] += _mass_lines(f"  tree.joints[{i}].joint.moved", each.mass, each.center, scalar)
     for i, frame in enumerate(robot.named_frames):
         member = f"  tree.frames[{i}]"
         parts.append([f"{member}.name = {_literal(frame.name)};", f"{member}.link = {frame.link};"])
@@ -77,8 +77,8 @@ def export_tree(robot: Robot, *, name: str, source: str = "", scalar: str = "dou
     tree = f"Tree<{scalar}, {len(joints)}, {len(robot.named_frames)}> tree"
     made = tree, f"Robot<kDof, {scalar}{followers}> robot"
     comment = """\
-/// The joints from the base on, each placed in the frame of its parent link [m]; masses of the links [kg] and their
-/// centres [m]; frames. Link 0 is the base, link i + 1 is the child of joint i."""
+/// The joints from the base on, each placed in the frame of its parent link [m], with their links; frames. Link 0 is
+/// the base, with its mass [kg] and centre [m]; link i + 1 is the child of joint i."""
     return _header(joints, name, source, scalar, ["array", "fpbm/model/robot.hpp"], comment, made, parts)
 
 
@@ -156,6 +156,11 @@ def _mass_lines(member: str, mass: float, center: ArrayLike, scalar: str) -> lis
     return [f"{member} = {{{_number(mass, scalar)}, {_braced(center, scalar)}}};"] if mass else []
 
 
+def _matrix_lines(member: str, matrix: ArrayLike, scalar: str) -> list[str]:
+    rows = (f"      {_braced(row, scalar)}," for row in np.asarray(matrix))
+    return [f"{member} = fpbm::Matrix<3, 3, {scalar}>{{", *rows, "  };"]
+
+
 def _joint_lines(member: str, joint: Joint, scalar: str) -> list[str]:
     lines = [
         f"{member}.name = {_literal(joint.name)};",
@@ -170,11 +175,17 @@ def _joint_lines(member: str, joint: Joint, scalar: str) -> list[str]:
         while bounds[-1] == inf:
             bounds.pop()
         lines.append(f"{member}.bounds = {_braced(bounds, scalar)};")
+    if joint.effort < inf:
+        lines.append(f"{member}.bounds.effort = {_number(joint.effort, scalar)};")
     if joint.mimic is not None:
         leader, *line = joint.mimic
         ratio, offset = (_number(x, scalar) for x in line)
         lines.append(f"{member}.mimic = {{{leader}, {ratio}, {offset}}};  // joint, ratio, offset")
-    return lines
+    lines += _mass_lines(f"{member}.moved", joint.mass, joint.center, scalar)
+    if np.any(joint.inertia):
+        lines += _matrix_lines(f"{member}.moved.inertia", joint.inertia, scalar)
+    drive = [joint.rotor_inertia, joint.damping, joint.friction]
+    return [*lines, f"{member}.drive = {_braced(drive, scalar)};"] if any(drive) else lines
 
 
 def _capsule_lines(capsules: Sequence[Capsule], scalar: str) -> str:
@@ -199,8 +210,7 @@ def _transform_lines(name: str, transform: ArrayLike, scalar: str) -> list[str]:
     if np.any(T[:3, 3]):
         lines.append(f"{name}.p = {_braced(T[:3, 3], scalar)};")
     if not np.array_equal(T[:3, :3], np.eye(3)):
-        rows = (f"      {_braced(row, scalar)}," for row in T[:3, :3])
-        lines += [f"{name}.R = fpbm::Matrix<3, 3, {scalar}>{{", *rows, "  };"]
+        lines += _matrix_lines(f"{name}.R", T[:3, :3], scalar)
     return lines
 
 

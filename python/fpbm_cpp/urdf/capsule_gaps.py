@@ -151,7 +151,7 @@ def postures(joints: Sequence[Joint], count: int) -> Array:
 def link_frames(joints: Sequence[TreeJoint], q: Array) -> Array:
     """Frames (count, n + 1, 4, 4) of the base and of each joint after its motion, for positions (count, n)."""
     drives = [i for i, each in enumerate(joints) if each.joint.mimic is None]
-    return core_link_frames(CoreRobot(list(joints), [], 0.0, np.zeros(3)), q[:, drives])
+    return core_link_frames(CoreRobot(list(joints), [], 0.0, np.zeros(3), np.zeros(3)), q[:, drives])
 
 
 def capsules_apart(first: Sequence[Fit], second: Sequence[Fit], poses: Array) -> Array:

@@ -3,21 +3,23 @@
 import difflib
 import os
 import warnings
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from graphlib import CycleError, TopologicalSorter
 from math import inf
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from .._core import MAX_DOF, rotation
 from .._types import Array
 from ..errors import ParameterError, UrdfWarning, not_one_of, wrong
+from ..inertia import Inertia, joined
 from ..joints import NO_BOUNDS, Joint, JointLimits, NamedFrame, TreeJoint, limited
-from .file import ENVELOPE, INERTIALS, Mass, UrdfJoint, read_robot
-from .xml_file import errors_of
+from .file import ENVELOPE, INERTIALS, KEPT, UrdfJoint, inertia_of, read_robot
+from .place import frame_at, pose
+from .srdf import read_rotors
+from .xml_file import Element, Kept, errors_of
 
 OWN_RANGE = "give limits=fp.JointLimits(lower=..., upper=...)"
 FREE = f"to move a joint, {OWN_RANGE}"
@@ -36,40 +38,52 @@ Follow = tuple[str, float, float]  # Leader, ratio, offset: the position is rati
 
 
 def read_urdf(
-    path: str | os.PathLike[str], tip: str, base: str | None = None, limits: JointLimits | None = None
+    path: str | os.PathLike[str],
+    tip: str,
+    base: str | None = None,
+    limits: JointLimits | None = None,
+    srdf: str | os.PathLike[str] | None = None,
 ) -> tuple[list[Joint], Array]:
     """Read the moving joints from link base (default: the root) to link tip, and the frame of the tip.
 
     See SerialArm.from_urdf(). The bounds of a leader are narrowed so that its mimic joints keep their own bounds.
     """
     notes: list[str] = []
-    joints, frame, _ = read_places(path, tip, base, limits, notes)
+    joints, frame, places, inertials = _read_chain(path, tip, base, limits, notes, INERTIALS)
+    with errors_of(path):
+        moving = {link: inertial for link, inertial in inertials.items() if places[link][0]}
+        joints = _weighed(joints, _bodies(places, moving, len(joints) + 1), srdf)
     warn(path, notes, 4)
     return joints, frame
 
 
 def read_places(
-    path: str | os.PathLike[str],
-    tip: str,
-    base: str | None = None,
-    limits: JointLimits | None = None,
-    notes: list[str] | None = None,
+    path: str | os.PathLike[str], tip: str, base: str | None = None, limits: JointLimits | None = None
 ) -> tuple[list[Joint], Array, Places]:
-    """The result of read_urdf(), and the place of each link of the file; joints off the chain are fixed at zero.
+    """The result of read_urdf() without inertias and warnings, and the place of each link of the file.
+
+    Joints off the chain are fixed at zero.
+    """
+    return _read_chain(path, tip, base, limits, [], KEPT)[:3]
+
+
+def _read_chain(
+    path: str | os.PathLike[str], tip: str, base: str | None, limits: JointLimits | None, notes: list[str], kept: Kept
+) -> tuple[list[Joint], Array, Places, dict[str, Element]]:
+    """Joints, frame of the tip, places of all links, and the <inertial> of the links if these are kept.
 
     notes: list for the texts of warnings.
     """
     own = limits.given if limits is not None else {}
-    notes = [] if notes is None else notes
     with errors_of(path):
-        links, every, _ = read_robot(os.fsdecode(path))
+        links, every, inertials = read_robot(os.fsdecode(path), kept)
         above = tree_of(links, every)
         branch = _branch(above, tip, base)
         with errors_of(None, ", or give another base or tip"):
             follows = follows_of(branch, {joint.name: joint.mimic for joint in every})
             joints, places = _chain(branch, follows, own, notes)
         joints = limited(coupled_joints(joints, follows, notes), limits)
-        return joints, places[tip][1], _all_places(above, places)
+        return joints, places[tip][1], _all_places(above, places), inertials
 
 
 def warn(path: str | os.PathLike[str], notes: Iterable[str], level: int) -> None:
@@ -290,19 +304,6 @@ def _all_places(above: Tree, known: Places) -> Places:
     return places
 
 
-def pose(xyz: ArrayLike, rpy: Iterable[float]) -> Array:
-    """The frame of a URDF's <origin>."""
-    roll, pitch, yaw = rpy
-    return frame_at(xyz, rotation([0, 0, yaw]) @ rotation([0, pitch, 0]) @ rotation([roll, 0, 0]))
-
-
-def frame_at(p: ArrayLike = 0.0, R: ArrayLike = ((1, 0, 0), (0, 1, 0), (0, 0, 1))) -> Array:
-    """A homogeneous matrix."""
-    T = np.eye(4)
-    T[:3, 3], T[:3, :3] = p, R
-    return T
-
-
 def require_axis(joint: UrdfJoint) -> None:
     if not np.any(joint.axis):
         raise ValueError(f"joint {joint.name!r}: axis = 0 0 0: must be a nonzero vector: correct the axis")
@@ -324,11 +325,15 @@ def chain_joint(joint: UrdfJoint, placement: Array, own: Collection[str] = (), f
     lower, upper = limit["lower"], limit["upper"]
     if lower >= upper and not follows:
         raise ValueError(f"joint {joint.name!r}: lower = {lower:g}: must be below upper = {upper:g}: {OWN_RANGE}")
-    for what in ("velocity", "acceleration", "jerk"):
+    for what in ("velocity", "acceleration", "jerk", "effort"):
         if limit[what] < 0.0:
             problem = f"{what} = {limit[what]:g}: must be positive: give limits=fp.JointLimits({what}=...)"
             raise ValueError(f"joint {joint.name!r}: {problem}")
-    return Joint(str(joint.type), placement, joint.axis, **limit, name=joint.name)
+    for what, value in joint.friction.items():
+        if value < 0.0:
+            raise ValueError(f"joint {joint.name!r}: {what} = {value:g}: must not be negative: correct <dynamics>")
+    fields: dict[str, Any] = {**limit, **joint.friction}
+    return Joint(str(joint.type), placement, joint.axis, **fields, name=joint.name)
 
 
 def _envelope(joint: UrdfJoint) -> dict[str, float]:
@@ -370,6 +375,7 @@ def coupled_joints(joints: list[Joint], follows: Mapping[str, Follow], notes: li
             velocity=min(leader.velocity, follower.velocity / abs(ratio)),
             acceleration=min(leader.acceleration, follower.acceleration / abs(ratio)),
             jerk=min(leader.jerk, follower.jerk / abs(ratio)),
+            effort=min(leader.effort, follower.effort * abs(ratio)),
         )
     if said:
         problem = "ranges of mimic joints are ignored, because they leave no range for the joint that leads them"
@@ -384,6 +390,7 @@ def read_tree(
     locked: Mapping[str, float] | None = None,
     tips: Iterable[str] | None = None,
     limits: JointLimits | None = None,
+    srdf: str | os.PathLike[str] | None = None,
     notes: list[str] | None = None,
 ) -> dict[str, Any]:
     """The arguments of a Robot; see Robot.from_urdf(). notes: list for the texts of warnings, instead of warnings."""
@@ -391,7 +398,7 @@ def read_tree(
         raise not_one_of("base", base, BASES)
     said: list[str] = [] if notes is None else notes
     with errors_of(path):
-        links, every, masses = read_robot(os.fsdecode(path), INERTIALS)
+        links, every, inertials = read_robot(os.fsdecode(path), INERTIALS)
         above = tree_of(links, every)
         held = _held(above, every, dict(locked or {}), tips)
         own = limits.given if limits is not None else {}
@@ -424,17 +431,14 @@ def read_tree(
         moving = {joint.name for joint in joints}
         followers = {name: follow for name, follow in follows.items() if name in moving}
         coupled = limited(coupled_joints(joints, followers, said), limits)
-        weights = _weights(places, masses, len(joints) + 1)
+        moved = _bodies(places, inertials, len(joints) + 1)
     if notes is None:
         warn(path, said, 4)
     return {
-        "joints": [
-            TreeJoint(joint, parent, mass=mass, center=center)
-            for joint, parent, (mass, center) in zip(coupled, parents, weights[1:])
-        ],
+        "joints": list(map(TreeJoint, _weighed(coupled, moved, srdf), parents)),
         "named_frames": [NamedFrame(link, number, frame) for link, (number, frame) in places.items()],
-        "base_mass": weights[0].mass,
-        "base_center": weights[0].center,
+        "base_mass": moved[0].mass,
+        "base_center": moved[0].center,
     }
 
 
@@ -507,11 +511,19 @@ def _depth_first(above: Tree) -> Iterator[UrdfJoint]:
         left += below[joint.child][::-1]
 
 
-def _weights(places: Places, masses: Mapping[str, Mass], count: int) -> list[Mass]:
-    """Mass and centre of mass of each link of the robot; a link may combine several links of the file."""
-    total, moment = np.zeros(count), np.zeros((count, 3))
-    for link, (mass, center) in masses.items():
+def _bodies(places: Places, inertials: Mapping[str, Element], count: int) -> list[Inertia]:
+    """Inertia of each link of the robot, which may combine several links of the file."""
+    parts: list[list[Inertia]] = [[] for _ in range(count)]
+    for link, inertial in inertials.items():
         number, frame = places[link]
-        total[number] += mass
-        moment[number] += mass * (frame[:3, :3] @ center + frame[:3, 3])
-    return [Mass(float(m), s / m if m > 0.0 else s) for m, s in zip(total, moment)]
+        parts[number].append(inertia_of(link, inertial).moved(frame))
+    return list(map(joined, parts))
+
+
+def _weighed(joints: Iterable[Joint], bodies: Sequence[Inertia], srdf: str | os.PathLike[str] | None) -> list[Joint]:
+    """The joints with the inertias of their links, of which the first is the base, and of their rotors."""
+    rotors = {} if srdf is None else read_rotors(srdf)
+    return [
+        replace(joint, mass=mass, center=center, inertia=inertia, rotor_inertia=rotors.get(joint.name, 0.0))
+        for joint, (mass, center, inertia) in zip(joints, bodies[1:])
+    ]

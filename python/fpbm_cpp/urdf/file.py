@@ -1,18 +1,19 @@
 """The links and joints of a URDF file.
 
-Meshes, transmissions and extensions for simulators are not read; masses are read on request.
+Meshes, transmissions and extensions for simulators are not read; inertias are read on request.
 """
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
-from .._types import Array
+from ..inertia import Inertia
+from .place import pose
 from .xml_file import Element, Kept, named, read_xml
 
 # Attributes that are read, by their elements.
-LIMITS = ("lower", "upper", "velocity", "acceleration", "jerk")
+LIMITS = ("lower", "upper", "velocity", "acceleration", "jerk", "effort")
+DYNAMICS = ("damping", "friction")
 ENVELOPE = ("velocity_offset", "deceleration_limit")  # Franka's element: bound on velocity as a function of position.
 KEPT: Kept = {
     ("robot",): {"link": ("name",), "joint": ("name", "type")},
@@ -22,22 +23,17 @@ KEPT: Kept = {
         "origin": ("xyz", "rpy"),
         "axis": ("xyz",),
         "limit": LIMITS,
+        "dynamics": DYNAMICS,
         "position_based_velocity_limits": ENVELOPE,
         "mimic": ("joint", "multiplier", "offset"),
     },
 }
+MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 INERTIALS: Kept = {
     **KEPT,
     ("robot", "link"): {"inertial": ()},
-    ("robot", "link", "inertial"): {"origin": ("xyz",), "mass": ("value",)},
+    ("robot", "link", "inertial"): {"origin": ("xyz", "rpy"), "mass": ("value",), "inertia": MOMENTS},
 }
-
-
-class Mass(NamedTuple):
-    """Mass of a link [kg], and its centre in the link's frame [m]."""
-
-    mass: float
-    center: Array
 
 
 @dataclass(frozen=True)
@@ -52,12 +48,13 @@ class UrdfJoint:
     rpy: list[float]
     axis: list[float]
     limit: dict[str, float]  # Given attributes of LIMITS.
+    friction: dict[str, float]  # Given attributes of DYNAMICS.
     envelope: dict[str, float]  # Given attributes of ENVELOPE.
     mimic: tuple[str, float, float] | None  # Leader, multiplier, offset.
 
 
-def read_robot(path: str, kept: Kept = KEPT) -> tuple[list[str], list[UrdfJoint], dict[str, Mass]]:
-    """Read the names of the links, the joints, and if INERTIALS are kept, the masses of the links with a mass.
+def read_robot(path: str, kept: Kept = KEPT) -> tuple[list[str], list[UrdfJoint], dict[str, Element]]:
+    """Read the names of the links, the joints, and if INERTIALS are kept, the <inertial> of the links that have one.
 
     Raises ValueError if the file is invalid.
     """
@@ -66,14 +63,22 @@ def read_robot(path: str, kept: Kept = KEPT) -> tuple[list[str], list[UrdfJoint]
         joint.require_one_each(f"joint {joint.attributes.get('name')!r}")
     links = named(robot.all("link"))
     joints = [_joint(name, element) for name, element in named(robot.all("joint")).items()]
-    masses: dict[str, Mass] = {}
-    for name, link in links.items():
-        for inertial in link.all("inertial")[:1]:
-            (mass,) = inertial.numbers("mass", "value", [0.0], f"link {name!r}")
-            if mass < 0.0:
-                raise ValueError(f"link {name!r}: mass = {mass:g}: must not be negative")
-            masses[name] = Mass(mass, np.array(inertial.numbers("origin", "xyz", [0.0] * 3, f"link {name!r}")))
-    return list(links), joints, masses
+    inertials = {name: each for name, link in links.items() for each in link.all("inertial")[:1]}
+    return list(links), joints, inertials
+
+
+def inertia_of(link: str, inertial: Element) -> Inertia:
+    """Inertia of a link in the frame of the link. Raises ValueError if a number is invalid or the mass negative."""
+    owner = f"link {link!r}"
+    (mass,) = inertial.numbers("mass", "value", [0.0], owner)
+    if mass < 0.0:
+        raise ValueError(f"{owner}: mass = {mass:g}: must not be negative")
+    xyz, rpy = (inertial.numbers("origin", key, [0.0, 0.0, 0.0], owner) for key in ("xyz", "rpy"))
+    xx, xy, xz, yy, yz, zz = (inertial.numbers("inertia", key, [0.0], owner)[0] for key in MOMENTS)
+    inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    if not any(rpy):
+        return Inertia(mass, np.array(xyz), inertia)
+    return Inertia(mass, np.zeros(3), inertia).moved(pose(xyz, rpy))
 
 
 def _joint(name: str, joint: Element) -> UrdfJoint:
@@ -90,10 +95,11 @@ def _joint(name: str, joint: Element) -> UrdfJoint:
     xyz, rpy = (numbers("origin", key, [0.0, 0.0, 0.0]) for key in ("xyz", "rpy"))
     axis = numbers("axis", "xyz", [1.0, 0.0, 0.0])
     limit = {key: numbers("limit", key, [0.0])[0] for key in LIMITS if joint.get("limit", key) is not None}
+    friction = {key: numbers("dynamics", key, [0.0])[0] for key in DYNAMICS if joint.get("dynamics", key) is not None}
     tag = "position_based_velocity_limits"
     envelope = {key: numbers(tag, key, [0.0])[0] for key in ENVELOPE if joint.get(tag, key) is not None}
     mimic = None
     if joint.all("mimic"):
         (multiplier,), (offset,) = numbers("mimic", "multiplier", [1.0]), numbers("mimic", "offset", [0.0])
         mimic = (required("mimic", "joint"), multiplier, offset)
-    return UrdfJoint(name, kind, parent, child, xyz, rpy, axis, limit, envelope, mimic)
+    return UrdfJoint(name, kind, parent, child, xyz, rpy, axis, limit, friction, envelope, mimic)

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from .._types import Array
 from ..errors import extra
-from .chain import pose
 from .mesh_file import edges_of, find_mesh, read_mesh
+from .place import pose
 from .xml_file import Element, Kept, errors_of, named, read_xml
 
 SIDES = 64  # Sides of the prism around a cylinder; the prism is 0.12 % wider than the cylinder.

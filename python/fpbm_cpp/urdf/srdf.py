@@ -1,4 +1,4 @@
-"""Disabled pairs of links and named postures of an SRDF file."""
+"""Disabled pairs of links, named postures and rotors of an SRDF file."""
 
 from __future__ import annotations
 
@@ -7,6 +7,10 @@ import os
 from .xml_file import Kept, errors_of, read_xml
 
 STATES: Kept = {("robot",): {"group_state": ("name",)}, ("robot", "group_state"): {"joint": ("name", "value")}}
+ROTORS: Kept = {
+    ("robot",): {"rotor_params": ()},
+    ("robot", "rotor_params"): {"joint": ("name", "mass", "gear_ratio")},
+}
 KEPT: Kept = {("robot",): {"disable_collisions": ("link1", "link2")}}
 
 
@@ -46,3 +50,21 @@ def read_group_states(path: str | os.PathLike[str]) -> list[dict[str, float]]:
             else:
                 states.append(state)
     return states
+
+
+def read_rotors(path: str | os.PathLike[str]) -> dict[str, float]:
+    """Inertias of the rotors at the joints, by joint, from each <joint> of <rotor_params> as Pinocchio reads them.
+
+    The attribute "mass" is the inertia of the rotor [kg m^2]; the inertia at the joint is mass gear_ratio^2. Raises
+    ValueError if the file is not a valid SRDF, OSError if it cannot be read.
+    """
+    rotors = {}
+    with errors_of(path):
+        for joint in (joint for element in read_xml(os.fsdecode(path), ROTORS).parts for joint in element.parts):
+            name = joint.attributes.get("name", "")
+            own = f"line {joint.line}: rotor of joint {name!r}"
+            (mass,), (gear,) = joint.own_numbers("mass", [0.0], own), joint.own_numbers("gear_ratio", [1.0], own)
+            if mass < 0.0:
+                raise ValueError(f"{own}: mass = {mass:g}: must not be negative: correct <rotor_params>")
+            rotors[name] = mass * gear**2
+    return rotors

@@ -7,7 +7,7 @@ import numpy as np
 from .._core import rotation, rotation_vector
 from .._types import Array
 from ..tasks import POSITION, ROTATION, AxisTask, RowsTask, Task
-from ..urdf.chain import frame_at
+from ..urdf.place import frame_at
 
 
 def in_space(points: Array) -> Array:

@@ -3,13 +3,16 @@
 #include "fpbm/model/chain.hpp"
 #include "fpbm/model/detail/dh_presets.hpp"
 #include "fpbm/model/detail/frame_presets.hpp"
+#include "fpbm/model/detail/franka_presets.hpp"
+#include "fpbm/model/detail/ur_presets.hpp"
 
 /// Arms as specified by their manufacturers, from the base frame to the flange frame.
 ///
 /// Each preset is a chain. Build a SerialArm<7> or SerialArm<6> from the chain, or change the chain first: chain.tip =
 /// chain.tip * tool adds a tool. All presets run in a Tracker without changes. If a manufacturer publishes no bounds on
 /// acceleration, the values are from the source in the comment of the preset: set chain.joints[i].bounds.acceleration
-/// to your own values. Only Franka publishes bounds on jerk.
+/// to your own values. Only Franka publishes bounds on jerk. Inertias of the links and efforts are from the source in
+/// the comment. Tools are not included. No preset has friction: the published files have values for simulators.
 namespace fpbm::presets {
 
 /// Preset with its name, for programs that read the name at run time.

@@ -176,6 +176,8 @@ class Drives {
     limits_.velocity(k) = std::min(limits_.velocity(k), bounds.velocity / std::abs(ratio));
     limits_.acceleration(k) = std::min(limits_.acceleration(k), bounds.acceleration / std::abs(ratio));
     limits_.jerk(k) = std::min(limits_.jerk(k), bounds.jerk / std::abs(ratio));
+    // The follower has at most the whole effort of the drive, divided by the ratio.
+    limits_.effort(k) = std::min(limits_.effort(k), bounds.effort * std::abs(ratio));
     if (bounds.deceleration < JointBounds<Scalar>::kNone) {
       validation::fail(name + ".deceleration", bounds.deceleration, "infinite for a mimic joint");
     }

@@ -34,6 +34,29 @@ template <typename Bounds>
   return chain;
 }
 
+/// Inertia of a link: mass [kg], centre of mass [m], and rotational inertia about the centre [kg m²].
+struct Body {
+  double mass;
+  Vector<3> centre;
+  double xx, xy, xz, yy, yz, zz;
+
+  /// In a frame in which `place` is the frame of the numbers.
+  [[nodiscard]] LinkInertia<> in(const Transform<>& place) const {
+    const Matrix<3, 3> inertia{{xx, xy, xz}, {xy, yy, yz}, {xz, yz, zz}};
+    return {mass, (place * Transform<>{centre, {}}).p, times(times(place.R, inertia), transposed(place.R))};
+  }
+};
+
+/// The chain with the links, given in the frames of the links, and with bounds on the efforts [Nm].
+[[nodiscard]] inline Chain<> powered(Chain<> chain, const std::vector<Body>& links,
+                                     const std::vector<double>& efforts) {
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    chain.joints[i].moved = links[i].in({});
+    chain.joints[i].bounds.effort = efforts[i];
+  }
+  return chain;
+}
+
 /// Frame of a joint as in a URDF file: origin [m]; roll, pitch and yaw about fixed axes [rad].
 [[nodiscard]] inline Transform<> placed(const Vector<3>& origin, const Vector<3>& turn) {
   return {origin, rotation(Vector<3>(0.0, 0.0, turn(2))) * rotation(Vector<3>(0.0, turn(1), 0.0)) *
