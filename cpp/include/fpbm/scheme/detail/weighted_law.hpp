@@ -33,21 +33,16 @@ struct WeightedLaw {
   }
 };
 
-/// Throws std::invalid_argument if a drive moves no mass, so that the mass matrix of the model is singular. name: of a
-/// drive, for the message.
-template <typename Model, typename Name>
-void require_mass_matrix(const Model& model, const Name& name) {
+/// Throws std::invalid_argument if a drive moves no mass, so that the mass matrix of the model is singular.
+template <typename Model>
+void require_mass_matrix(const Model& model) {
   typename Model::State state;
   model.robot().update(spread_posture(model.robot().limits(), 0), state);
   Cholesky<Model::kDof, typename Model::Scalar> cholesky;
   if (cholesky.factor(model.mass_matrix(state)) == Status::kOk) return;
   validation::reject(
-      name(cholesky.lost_pivot()),
+      validation::element("joints", cholesky.lost_pivot()),
       " moves no mass: must move a link with a mass, or have a rotor inertia: give the inertia of links");
-}
-template <typename Model>
-void require_mass_matrix(const Model& model) {
-  require_mass_matrix(model, [](Eigen::Index i) { return validation::element("joints", i); });
 }
 
 }  // namespace fpbm
