@@ -131,7 +131,7 @@ void expect_none_with_dynamics() {
   }
   const Dynamics<N> model(chain);
   const auto z = NullSpace<N>{}.with_damping(2.0);
-  expect_none_in(BalancedTorque(model, 0.5, Vector<N>(Vector<4>::Ones()), 1.0, 1.0, z), "torque");
+  expect_none_in(BalancedTorque(model, 0.95, Vector<N>(Vector<4>::Ones()), 1.0, 1.0, z), "torque");
   expect_none_in(MinimumEnergy(model, 1.0), "energy");
 }
 TEST(NoAllocation, in_schemes_with_dynamics) {
