@@ -120,8 +120,9 @@ Array resolve_many(const Scheme& scheme, const Any& arm, const ArrayLike& q, con
 /// returned and, if out is given, written to out. After an error, out has the motions of the preceding states.
 Array resolve_for_arm(const Scheme& given, const Arm& arm, const ArrayLike& q, const ArrayLike& qd, const ArrayLike& x,
                       const ArrayLike& xd, const OptionalArray& xdd, const std::string& task, const OptionalOut& out) {
-  const Scheme on_arm = given.uses_dynamics ? given.on(arm) : Scheme{given.level};
-  const Scheme& scheme = given.uses_dynamics ? on_arm : given;
+  std::optional<Scheme> with_dynamics;
+  if (given.uses_dynamics) with_dynamics = given.on(arm);
+  const Scheme& scheme = with_dynamics ? *with_dynamics : given;
   return arm.visit(task, [&](const auto& any, auto space) {
     using Space = decltype(space);
     if (py::isinstance<py::array>(q) ? py::array(q).ndim() == 2 : dimensions(q) == 2) {

@@ -24,6 +24,15 @@ AnyWeights any_weights(const Scheme& scheme, Eigen::Index dof) {
   return checked(UnitWeights{});
 }
 
+Status resolve_rows(const LeastTorque& law, const TaskEquation<kDynamic, kDynamic>& task, const State<kDynamic>& state,
+                    JointVector& u) noexcept {
+  return law.resolve_rows(task, state, u);
+}
+Status resolve_rows(const LeastEnergy& law, const TaskEquation<kDynamic, kDynamic>& task, const State<kDynamic>& state,
+                    JointVector& u) noexcept {
+  return law.resolve_rows(task, state, u);
+}
+
 Scheme Scheme::on(const Model& model) const {
   Scheme scheme = *this;
   if (!uses_dynamics) return scheme;

@@ -35,6 +35,45 @@ struct SharedDynamics {
   [[nodiscard]] auto bias(const State& state) const noexcept { return held->bias(state); }
 };
 
+using LeastTorque = MinimumTorqueScheme<SharedDynamics, AnyWeights>;
+using LeastEnergy = MinimumEnergyScheme<SharedDynamics>;
+/// law.resolve_rows(), compiled once, in scheme.cpp.
+[[nodiscard]] Status resolve_rows(const LeastTorque& law, const TaskEquation<kDynamic, kDynamic>& task,
+                                  const State<kDynamic>& state, JointVector& u) noexcept;
+[[nodiscard]] Status resolve_rows(const LeastEnergy& law, const TaskEquation<kDynamic, kDynamic>& task,
+                                  const State<kDynamic>& state, JointVector& u) noexcept;
+
+/// A law with dynamics, for all task spaces and stacks by the same resolve_rows().
+template <typename Law>
+struct WithDynamics {
+  static constexpr Level kLevel = Law::kLevel;
+  static constexpr int kDof = kDynamic;
+
+  Law scheme;
+
+  void require_dof(Eigen::Index dof) const { scheme.require_dof(dof); }
+
+  template <typename Space>
+  [[nodiscard]] Status resolve(const Kinematics<Space, kDynamic>& kinematics, const Reference<Space>& reference,
+                               const State<kDynamic>& state, JointVector& u) const noexcept {
+    const auto in_metres = [&](Matrix<kDynamic, kDynamic> rows) noexcept {
+      for (int i = Space::kRows - Space::kTurns; i < Space::kRows; ++i) {
+        for (Eigen::Index j = 0; j < rows.cols(); ++j) rows(i, j) *= kinematics.length;
+      }
+      return rows;
+    };
+    const auto command = [&] {
+      if constexpr (kLevel == Level::kVelocity) return commanded_velocity(scheme.k, kinematics, reference);
+      if constexpr (kLevel == Level::kAcceleration) {
+        return commanded_acceleration(scheme.k1, scheme.k2, kinematics, reference, state);
+      }
+    }();
+    const auto J = in_metres(kinematics.J), Jd = kLevel == Level::kVelocity ? J : in_metres(kinematics.Jd);
+    const JointVector b = in_metres(command), xd = in_metres(reference.xd);
+    return bindings::resolve_rows(scheme, {J, Jd, b, xd}, state, u);
+  }
+};
+
 struct Scheme;
 /// The weights of a scheme as one type. Throws std::invalid_argument if the number of weights is not dof.
 AnyWeights any_weights(const Scheme& scheme, Eigen::Index dof);
@@ -120,10 +159,10 @@ struct Scheme {
   [[nodiscard]] auto law_with_dynamics(const JointLimits<kDynamic>& limits) const {
     const SharedDynamics model{dynamics};
     if constexpr (kLevel == Level::kVelocity) {
-      return MinimumEnergyScheme<SharedDynamics>(model, k, null_space(limits), singular);
+      return WithDynamics<LeastEnergy>{LeastEnergy(model, k, null_space(limits), singular)};
     } else {
       const AnyWeights W = any_weights(*this, limits.lower.size());
-      return MinimumTorqueScheme<SharedDynamics, AnyWeights>(model, alpha, W, k1, k2, null_space(limits), singular);
+      return WithDynamics<LeastTorque>{LeastTorque(model, alpha, W, k1, k2, null_space(limits), singular)};
     }
   }
 

@@ -10,19 +10,21 @@ namespace {
 
 /// The law of the first level: with dynamics, or else the law of `Plain`. One type, so that the tracker of a stack is
 /// compiled once for each level.
-template <typename Plain, typename WithDynamics>
+template <typename Plain, typename Law>
 struct FirstLaw : Plain {
-  std::optional<WithDynamics> with_dynamics;
+  std::optional<WithDynamics<Law>> with_dynamics;
 
-  FirstLaw(const Plain& plain, const std::optional<WithDynamics>& with) : Plain(plain), with_dynamics(with) {}
+  FirstLaw(const Plain& plain, const std::optional<WithDynamics<Law>>& with) : Plain(plain), with_dynamics(with) {}
 
   [[nodiscard]] bool moves_at_rest() const noexcept {
-    return with_dynamics ? fpbm::moves_at_rest(*with_dynamics) : this->null_space.template active<Level::kVelocity>();
+    return with_dynamics ? fpbm::moves_at_rest(with_dynamics->scheme)
+                         : this->null_space.template active<Level::kVelocity>();
   }
   template <int M>
   [[nodiscard]] Status resolve_rows(const TaskEquation<M, kDynamic>& task, const State<kDynamic>& state,
                                     JointVector& u) const noexcept {
-    return with_dynamics ? with_dynamics->resolve_rows(task, state, u) : Plain::resolve_rows(task, state, u);
+    return with_dynamics ? bindings::resolve_rows(with_dynamics->scheme, task, state, u)
+                         : Plain::resolve_rows(task, state, u);
   }
 
   friend void set_damping(FirstLaw& law, const DefaultDamping<>& damping) {
@@ -41,10 +43,9 @@ auto with_law(const Scheme& scheme, const JointLimits<kDynamic>& limits, F&& f) 
   const auto at = [&](auto level) {
     constexpr Level kLevel = decltype(level)::value;
     const auto plain = scheme.law<kLevel>(W, limits);
-    using WithDynamics = decltype(scheme.law_with_dynamics<kLevel>(limits));
-    std::optional<WithDynamics> with;
+    std::optional<decltype(scheme.law_with_dynamics<kLevel>(limits))> with;
     if (scheme.uses_dynamics) with = scheme.law_with_dynamics<kLevel>(limits);
-    using Law = FirstLaw<std::decay_t<decltype(plain)>, WithDynamics>;
+    using Law = FirstLaw<std::decay_t<decltype(plain)>, decltype(with->scheme)>;
     return f(ByLevels<Law, AnyStack>(Law(plain, with)));
   };
   return scheme.level == Level::kVelocity ? at(std::integral_constant<Level, Level::kVelocity>{})
