@@ -90,13 +90,14 @@ class PyTracker {
   }
 
  public:
-  PyTracker(const Model& model, const Scheme& scheme, const ArrayLike& q0, const OptionalArray& qd0,
+  PyTracker(const Model& model, const Scheme& given_scheme, const ArrayLike& q0, const OptionalArray& qd0,
             const OptionalArray& qdd0, const std::string& task, const py::object& stack, const py::object& limits,
             const TrackerOptions<>& options, const py::object& given)
       : dof_(model.dof()),
         dt_(options.dt),
-        scheme_(scheme.with_null_damping(options.null_damping)),
+        scheme_(given_scheme.on(model).with_null_damping(options.null_damping)),
         limits_(limits_of(model, limits)) {
+    const Scheme scheme = given_scheme.on(model);
     State<kDynamic> start{joint_vector(q0, "q0", dof_), JointVector::Zero(dof_)};
     if (qd0) start.qd = joint_vector(*qd0, "qd0", dof_);
     const JointVector before = qdd0 ? joint_vector(*qdd0, "qdd0", dof_) : JointVector::Zero(dof_);

@@ -76,7 +76,7 @@ class PerState {
   py::ssize_t size_;
 };
 
-/// resolve() in many states. An argument with one value holds for all states.
+/// resolve() in many states. scheme: for the arm. An argument with one value holds for all states.
 template <typename Space, typename Any>
 Array resolve_many(const Scheme& scheme, const Any& arm, const ArrayLike& q, const ArrayLike& qd, const ArrayLike& x,
                    const ArrayLike& xd, const OptionalArray& xdd, const OptionalOut& out) {
@@ -118,8 +118,11 @@ Array resolve_many(const Scheme& scheme, const Any& arm, const ArrayLike& q, con
 
 /// Joint motion of a scheme for an arm in a state, or in each of several states along a leading axis. The result is
 /// returned and, if out is given, written to out. After an error, out has the motions of the preceding states.
-Array resolve_for_arm(const Scheme& scheme, const Arm& arm, const ArrayLike& q, const ArrayLike& qd, const ArrayLike& x,
+Array resolve_for_arm(const Scheme& given, const Arm& arm, const ArrayLike& q, const ArrayLike& qd, const ArrayLike& x,
                       const ArrayLike& xd, const OptionalArray& xdd, const std::string& task, const OptionalOut& out) {
+  std::optional<Scheme> with_dynamics;
+  if (given.uses_dynamics) with_dynamics = given.on(arm);
+  const Scheme& scheme = with_dynamics ? *with_dynamics : given;
   return arm.visit(task, [&](const auto& any, auto space) {
     using Space = decltype(space);
     if (py::isinstance<py::array>(q) ? py::array(q).ndim() == 2 : dimensions(q) == 2) {
@@ -162,8 +165,9 @@ void check(const Scheme& scheme) {
   if (const auto* w = std::get_if<Scheme::Diagonal>(&scheme.weights)) dof = w->size();
   if (const auto* W = std::get_if<Scheme::Dense>(&scheme.weights)) dof = W->rows();
   validation::require_non_negative("manipulability_gain", scheme.manipulability_gain);
-  const auto limits = JointLimits<kDynamic>::none(dof);
-  (void)scheme.plain<Position<2>>(limits);
+  Scheme without_dynamics = scheme;
+  without_dynamics.uses_dynamics = false;
+  (void)without_dynamics.plain<Position<2>>(JointLimits<kDynamic>::none(dof));
 }
 
 Scheme make_scheme(const std::string& level, const py::typing::Dict<py::str, py::object>& parameters) {
@@ -194,6 +198,7 @@ Scheme make_scheme(const std::string& level, const py::typing::Dict<py::str, py:
       scheme.weights = joint_vector(W, "weights");
     }
   }
+  scheme.uses_dynamics = number("uses_dynamics") != 0.0;
   for (const auto& [key, member] : kSchemeNumbers) scheme.*member = number(key);
   scheme.rest_posture = vector("rest_posture");
   scheme.c = vector("c");

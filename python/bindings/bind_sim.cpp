@@ -129,9 +129,10 @@ constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 /// A whole motion, run without the interpreter's lock. With limit options, the motion keeps the limits. With stack
 /// tasks, the motion has several tasks. kept: bound on the speed of the tip [m/s] and least duration [s] of a motion
 /// that keeps its path.
-Outcomes rollout(const Model& arm, const Path& path, const Scheme& scheme, const ArrayLike& q0, const ArrayLike& qd0,
+Outcomes rollout(const Model& arm, const Path& path, const Scheme& given, const ArrayLike& q0, const ArrayLike& qd0,
                  double dt, double hold, const std::string& task, const py::object& limit_options,
                  const py::object& stack_tasks, const std::pair<double, double>& kept) {
+  const Scheme scheme = given.on(arm);
   const State<kDynamic> start{joint_vector(q0, "q0", arm.dof()), joint_vector(qd0, "qd0", arm.dof())};
   const MotionOptions options(arm, path, dt, hold, limit_options, stack_tasks);
   return visit_space(arm, task, options.stack() != nullptr, [&](const auto* any, auto space) -> Outcomes {
@@ -168,9 +169,10 @@ Outcomes rollout(const Model& arm, const Path& path, const Scheme& scheme, const
 /// A motion along a path in the least time. end_speeds: speeds of the tip at the start and at the end [m/s]. If the arm
 /// cannot follow the path, the time is the fraction of the path that can be followed, and there are no samples; q is
 /// the last posture.
-Outcomes fastest(const Model& arm, const Path& path, const Scheme& scheme, const ArrayLike& q0, double dt,
+Outcomes fastest(const Model& arm, const Path& path, const Scheme& given, const ArrayLike& q0, double dt,
                  const std::string& task, const py::object& limits, double tip_speed, double tip_acceleration,
                  const py::object& bounds, const py::object& stack_tasks, const ClockEnds& end_speeds) {
+  const Scheme scheme = given.on(arm);
   const FastestOptions options{dt, tip_speed, tip_acceleration, 0.0, end_speeds[0], end_speeds[1]};
   const std::array<bool, 2> moving = moves_at_ends(options);
   validation::require_positive("dt", dt);
@@ -245,7 +247,8 @@ py::typing::Tuple<Array, int> check_sweep(const Model& arm, const Path& path, co
       const py::ssize_t checked = options.limits() != nullptr ? rows.shape(0) : 1;
       for (py::ssize_t k = 0; k < checked; ++k) {
         try {
-          Motion<Space>{any, same, *schemes[i], {row(rows, k), rest}, options.grid(), options.stack()}.require(
+          const Scheme scheme = schemes[i]->on(arm);
+          Motion<Space>{any, same, scheme, {row(rows, k), rest}, options.grid(), options.stack()}.require(
               options.limits());
         } catch (const ParameterError& wrong) {
           const std::string which = options.limits() != nullptr ? ", q0s[" + std::to_string(k) + "]" : "";
@@ -280,9 +283,12 @@ Chunk sweep_chunk(const Arm& arm, const Path& path, const Schemes& schemes, cons
     using Space = decltype(space);
     const AnyPath<Space> same = path.as<Space>();
     std::vector<Job<Space>> jobs;
+    std::deque<Scheme> with_dynamics;
     py::typing::List<Arrays> arrays;
     for (std::size_t i = 0; i < which.size(); ++i) {
-      jobs.push_back({schemes.at(which[i]), row(rows, static_cast<py::ssize_t>(i))});
+      const Scheme* scheme = schemes.at(which[i]);
+      if (scheme->uses_dynamics) scheme = &with_dynamics.emplace_back(scheme->on(arm));
+      jobs.push_back({scheme, row(rows, static_cast<py::ssize_t>(i))});
       if (motions) {
         const MotionArrays<Space> whole(options.grid().samples(), arm.dof(), options.limits(), options.stack());
         jobs.back().output = whole.output;

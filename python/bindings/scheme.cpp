@@ -24,8 +24,30 @@ AnyWeights any_weights(const Scheme& scheme, Eigen::Index dof) {
   return checked(UnitWeights{});
 }
 
+Status resolve_rows(const LeastTorque& law, const TaskEquation<kDynamic, kDynamic>& task, const State<kDynamic>& state,
+                    JointVector& u) noexcept {
+  return law.resolve_rows(task, state, u);
+}
+Status resolve_rows(const LeastEnergy& law, const TaskEquation<kDynamic, kDynamic>& task, const State<kDynamic>& state,
+                    JointVector& u) noexcept {
+  return law.resolve_rows(task, state, u);
+}
+
+Scheme Scheme::on(const Model& model) const {
+  Scheme scheme = *this;
+  if (!uses_dynamics) return scheme;
+  scheme.dynamics = std::make_shared<const AnyDynamics>(model.dynamics());
+  return scheme;
+}
+
 template <typename Space>
 EitherScheme<Space> Scheme::plain(const JointLimits<kDynamic>& limits) const {
+  if (uses_dynamics) {
+    if (level == Level::kVelocity) {
+      return AnyScheme<Level::kVelocity, Space>(law_with_dynamics<Level::kVelocity>(limits));
+    }
+    return AnyScheme<Level::kAcceleration, Space>(law_with_dynamics<Level::kAcceleration>(limits));
+  }
   const auto with = [&](const auto& W, const auto& bounds) -> EitherScheme<Space> {
     if (level == Level::kVelocity) return AnyScheme<Level::kVelocity, Space>(law<Level::kVelocity>(W, bounds));
     return AnyScheme<Level::kAcceleration, Space>(law<Level::kAcceleration>(W, bounds));

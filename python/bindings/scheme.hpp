@@ -9,7 +9,10 @@
 #include "arm.hpp"
 #include "fpbm/any/any_scheme.hpp"
 #include "fpbm/any/detail/any_weights.hpp"
+#include "fpbm/model/dynamics.hpp"
 #include "fpbm/scheme/acceleration_scheme.hpp"
+#include "fpbm/scheme/detail/minimum_energy.hpp"
+#include "fpbm/scheme/detail/minimum_torque.hpp"
 #include "fpbm/scheme/velocity_scheme.hpp"
 
 namespace fpbm::bindings {
@@ -17,6 +20,63 @@ namespace fpbm::bindings {
 /// A scheme at velocity level or at acceleration level.
 template <typename Space>
 using EitherScheme = std::variant<AnyScheme<Level::kVelocity, Space>, AnyScheme<Level::kAcceleration, Space>>;
+
+/// Dynamics that the copies of a scheme share.
+struct SharedDynamics {
+  using Scalar = double;
+  using State = AnyDynamics::State;
+  static constexpr int kDof = kDynamic;
+
+  std::shared_ptr<const AnyDynamics> held;
+
+  [[nodiscard]] const auto& robot() const noexcept { return held->robot(); }
+  [[nodiscard]] int dof() const noexcept { return held->dof(); }
+  [[nodiscard]] auto mass_matrix(const State& state) const noexcept { return held->mass_matrix(state); }
+  [[nodiscard]] auto bias(const State& state) const noexcept { return held->bias(state); }
+};
+
+using LeastTorque = MinimumTorqueScheme<SharedDynamics, AnyWeights>;
+using LeastEnergy = MinimumEnergyScheme<SharedDynamics>;
+/// law.resolve_rows(), compiled once, in scheme.cpp.
+[[nodiscard]] Status resolve_rows(const LeastTorque& law, const TaskEquation<kDynamic, kDynamic>& task,
+                                  const State<kDynamic>& state, JointVector& u) noexcept;
+[[nodiscard]] Status resolve_rows(const LeastEnergy& law, const TaskEquation<kDynamic, kDynamic>& task,
+                                  const State<kDynamic>& state, JointVector& u) noexcept;
+
+/// A law with dynamics, for all task spaces and stacks by the same resolve_rows().
+template <typename Law>
+struct WithDynamics {
+  static constexpr Level kLevel = Law::kLevel;
+  static constexpr int kDof = kDynamic;
+
+  Law scheme;
+
+  void require_dof(Eigen::Index dof) const { scheme.require_dof(dof); }
+
+  template <typename Space>
+  [[nodiscard]] Status resolve(const Kinematics<Space, kDynamic>& kinematics, const Reference<Space>& reference,
+                               const State<kDynamic>& state, JointVector& u) const noexcept {
+    const auto in_metres = [&](Matrix<kDynamic, kDynamic> rows) noexcept {
+      for (int i = Space::kRows - Space::kTurns; i < Space::kRows; ++i) {
+        for (Eigen::Index j = 0; j < rows.cols(); ++j) rows(i, j) *= kinematics.length;
+      }
+      return rows;
+    };
+    const auto command = [&] {
+      if constexpr (kLevel == Level::kVelocity) return commanded_velocity(scheme.k, kinematics, reference);
+      if constexpr (kLevel == Level::kAcceleration) {
+        return commanded_acceleration(scheme.k1, scheme.k2, kinematics, reference, state);
+      }
+    }();
+    const auto J = in_metres(kinematics.J), Jd = kLevel == Level::kVelocity ? J : in_metres(kinematics.Jd);
+    const JointVector b = in_metres(command), xd = in_metres(reference.xd);
+    return bindings::resolve_rows(scheme, {J, Jd, b, xd}, state, u);
+  }
+};
+
+struct Scheme;
+/// The weights of a scheme as one type. Throws std::invalid_argument if the number of weights is not dof.
+AnyWeights any_weights(const Scheme& scheme, Eigen::Index dof);
 
 /// The parameters of a scheme, before the number of joints is known. The default of a parameter has no effect.
 struct Scheme {
@@ -36,6 +96,12 @@ struct Scheme {
   double joint_centring = 0.0;
   double manipulability_gain = 0.0;
   SingularDamping<> singular = SingularDamping<>::off();
+  bool uses_dynamics = false;  ///< Least energy at velocity level, least torque at acceleration level.
+  std::shared_ptr<const AnyDynamics> dynamics = {};  ///< Set by on(), if uses_dynamics.
+
+  /// The scheme for a robot, whose dynamics it has if uses_dynamics. Throws std::invalid_argument if then a drive of
+  /// the robot moves no mass.
+  [[nodiscard]] Scheme on(const Model& model) const;
 
   /// The scheme with the null-space damping of a tracker, if it has none.
   [[nodiscard]] Scheme with_null_damping(double damping) const {
@@ -57,7 +123,8 @@ struct Scheme {
   [[nodiscard]] const EitherScheme<Space>& kept(Eigen::Index dof, JointBits continuous = 0) const {
     auto& [joints, turning, scheme] = std::get<Kept<Space>>(kept_);  // The caller holds Python's lock.
     if (!scheme || joints != dof || turning != continuous) {
-      if (needs_arm()) validation::reject("scheme", ": has objectives that need an arm: give an arm, not a Kinematics");
+      if (needs_arm())
+        validation::reject("scheme", ": has dynamics or objectives that need an arm: give an arm, not a Kinematics");
       auto limits = JointLimits<kDynamic>::none(dof);
       limits.continuous = continuous;
       scheme = std::make_shared<const EitherScheme<Space>>(plain<Space>(limits));
@@ -67,10 +134,10 @@ struct Scheme {
     return *scheme;
   }
 
-  /// Whether law() is the whole scheme, so that no objective wraps the law.
-  [[nodiscard]] bool is_plain() const noexcept { return manipulability_gain == 0.0; }
+  /// Whether law() is the whole scheme: no objective wraps the law, and the law has no dynamics.
+  [[nodiscard]] bool is_plain() const noexcept { return manipulability_gain == 0.0 && !uses_dynamics; }
 
-  /// Whether an objective reads the arm or its limits.
+  /// Whether the scheme reads the arm or its limits.
   [[nodiscard]] bool needs_arm() const noexcept { return !is_plain() || joint_centring != 0.0; }
 
   /// The scheme without objectives that wrap the law, for joints with the given limits. Compiled once, in scheme.cpp.
@@ -84,6 +151,18 @@ struct Scheme {
       return VelocityScheme<N, double, Weights>(W, k, null_space(limits), singular);
     } else {
       return AccelerationScheme<N, double, Weights>(alpha, W, k1, k2, null_space(limits), singular);
+    }
+  }
+
+  /// law() with dynamics, of the robot of on().
+  template <Level kLevel>
+  [[nodiscard]] auto law_with_dynamics(const JointLimits<kDynamic>& limits) const {
+    const SharedDynamics model{dynamics};
+    if constexpr (kLevel == Level::kVelocity) {
+      return WithDynamics<LeastEnergy>{LeastEnergy(model, k, null_space(limits), singular)};
+    } else {
+      const AnyWeights W = any_weights(*this, limits.lower.size());
+      return WithDynamics<LeastTorque>{LeastTorque(model, alpha, W, k1, k2, null_space(limits), singular)};
     }
   }
 
@@ -126,9 +205,6 @@ struct Scheme {
   /// Results of kept().
   mutable std::tuple<Kept<Position<2>>, Kept<PlanarPose>, Kept<Position<3>>, Kept<Pose>> kept_ = {};
 };
-
-/// The weights of a scheme as one type. Throws std::invalid_argument if the number of weights is not dof.
-AnyWeights any_weights(const Scheme& scheme, Eigen::Index dof);
 
 /// The parameters that are numbers; the default is 0.
 inline constexpr std::pair<const char*, double Scheme::*> kSchemeNumbers[] = {

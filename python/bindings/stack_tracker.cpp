@@ -1,3 +1,4 @@
+#include <optional>
 #include <type_traits>
 
 #include "fpbm/realtime/stack_tracker.hpp"
@@ -7,16 +8,48 @@
 namespace fpbm::bindings {
 namespace {
 
+/// The law of the first level: with dynamics, or else the law of `Plain`. One type, so that the tracker of a stack is
+/// compiled once for each level.
+template <typename Plain, typename Law>
+struct FirstLaw : Plain {
+  std::optional<WithDynamics<Law>> with_dynamics;
+
+  FirstLaw(const Plain& plain, const std::optional<WithDynamics<Law>>& with) : Plain(plain), with_dynamics(with) {}
+
+  [[nodiscard]] bool moves_at_rest() const noexcept {
+    return with_dynamics ? fpbm::moves_at_rest(with_dynamics->scheme)
+                         : this->null_space.template active<Level::kVelocity>();
+  }
+  template <int M>
+  [[nodiscard]] Status resolve_rows(const TaskEquation<M, kDynamic>& task, const State<kDynamic>& state,
+                                    JointVector& u) const noexcept {
+    return with_dynamics ? bindings::resolve_rows(with_dynamics->scheme, task, state, u)
+                         : Plain::resolve_rows(task, state, u);
+  }
+
+  friend void set_damping(FirstLaw& law, const DefaultDamping<>& damping) {
+    set_damping(static_cast<Plain&>(law), damping);
+    if (law.with_dynamics) set_damping(*law.with_dynamics, damping);
+  }
+};
+
 /// Calls f with the scheme as a type of the library, for joints with the given limits.
 template <typename F>
 auto with_law(const Scheme& scheme, const JointLimits<kDynamic>& limits, F&& f) {
-  if (!scheme.is_plain()) {
+  if (scheme.manipulability_gain != 0.0) {
     validation::reject("manipulability_gain", " needs a single task: must not be given with a stack");
   }
   const AnyWeights W = any_weights(scheme, limits.lower.size());
-  const auto by_levels = [&f](const auto& law) { return f(ByLevels<std::decay_t<decltype(law)>, AnyStack>(law)); };
-  return scheme.level == Level::kVelocity ? by_levels(scheme.law<Level::kVelocity>(W, limits))
-                                          : by_levels(scheme.law<Level::kAcceleration>(W, limits));
+  const auto at = [&](auto level) {
+    constexpr Level kLevel = decltype(level)::value;
+    const auto plain = scheme.law<kLevel>(W, limits);
+    std::optional<decltype(scheme.law_with_dynamics<kLevel>(limits))> with;
+    if (scheme.uses_dynamics) with = scheme.law_with_dynamics<kLevel>(limits);
+    using Law = FirstLaw<std::decay_t<decltype(plain)>, decltype(with->scheme)>;
+    return f(ByLevels<Law, AnyStack>(Law(plain, with)));
+  };
+  return scheme.level == Level::kVelocity ? at(std::integral_constant<Level, Level::kVelocity>{})
+                                          : at(std::integral_constant<Level, Level::kAcceleration>{});
 }
 
 }  // namespace

@@ -9,7 +9,17 @@ from ._core import Scheme as CoreScheme
 from ._types import ArrayField, OptionalArrayField
 from .parameter import NOT_NEGATIVE, POSITIVE, Data, Parameter, data, library_class, parameter
 
-__all__ = ["FPBM", "MAN", "MVN", "WMVN", "Balanced", "Scheme", "WMVNAcceleration"]
+__all__ = [
+    "FPBM",
+    "MAN",
+    "MVN",
+    "WMVN",
+    "Balanced",
+    "MinimumEnergy",
+    "MinimumTorque",
+    "Scheme",
+    "WMVNAcceleration",
+]
 
 # Parameters of several classes.
 ALPHA = Parameter(help="Weight of WMVN in the balance; the weight of MAN is 1 - alpha.", usual=0.6, low=0.0, high=1.0)
@@ -24,7 +34,8 @@ SQUARED = replace(NOT_NEGATIVE, unit="rad^2/s^2, rad^2/s at velocity level")
 class Scheme(Data, CoreScheme):
     """Base class of the redundancy resolution schemes.
 
-    joint_centring and manipulability_gain need an arm: resolve() rejects them for a Kinematics.
+    joint_centring, manipulability_gain, MinimumTorque and MinimumEnergy need an arm: resolve() rejects them for a
+    Kinematics.
     """
 
     kind: ClassVar[str]
@@ -145,5 +156,44 @@ class FPBM(AccelerationScheme):
     k2: float = parameter("Feedback gain on position.", NOT_NEGATIVE, default=25.0, unit="1/s^2")
 
 
+@data
+class MinimumEnergy(VelocityScheme):
+    """Least kinetic energy: qd = J_M+ xd, which minimises qd' M qd (Whitney, 1969). M is the mass matrix of the arm."""
+
+    kind = "minimum_energy"
+    fixed: ClassVar[dict[str, float]] = {"uses_dynamics": 1.0}
+    _: KW_ONLY
+    k: float = parameter(like=K, default=0.0)
+
+
+@data
+class MinimumTorque(AccelerationScheme):
+    """Least torque: (1 - alpha) MTN + alpha WMVN (9), with feedback as in FPBM.
+
+    MTN is the qdd with the least norm of the torque M qdd + h of the arm, gravity included (Hollerbach and Suh, 1987).
+    Long motions are unstable without null_damping, and MTN alone (alpha = 0) moves light joints fast. With a stack, set
+    k1 = k2 = 0, since the tasks have their own gains.
+    """
+
+    kind = "minimum_torque"
+    fixed: ClassVar[dict[str, float]] = {"uses_dynamics": 1.0}
+    _: KW_ONLY
+    alpha: float = parameter(
+        "Weight of WMVN in the balance; the weight of MTN is 1 - alpha.", default=0.0, low=0.0, high=1.0
+    )
+    weights: OptionalArrayField = parameter(
+        "W of WMVN or its diagonal, positive definite; I by default. Only ratios count.",
+        POSITIVE,
+        default=None,
+        shape="(n,) or (n, n)",
+    )
+    k1: float = parameter("Feedback gain on velocity.", NOT_NEGATIVE, default=10.0, unit="1/s")
+    k2: float = parameter("Feedback gain on position.", NOT_NEGATIVE, default=25.0, unit="1/s^2")
+
+
 # Classes of schemes, by the kind in a table.
-SCHEMES: dict[str, type[Scheme]] = {each.kind: each for each in (MVN, WMVN, MAN, WMVNAcceleration, Balanced, FPBM)}
+SCHEMES: dict[str, type[Scheme]] = {
+    each.kind: each for each in (MVN, WMVN, MAN, WMVNAcceleration, Balanced, FPBM, MinimumEnergy, MinimumTorque)
+}
+# Classes that also suit an arm without masses.
+WITHOUT_DYNAMICS = {kind: each for kind, each in SCHEMES.items() if "uses_dynamics" not in each.fixed}

@@ -120,6 +120,25 @@ TEST(NoAllocation, in_secondary_objectives) {
   expect_none_in_an_ascent(any_planar_arm(Vector<4>::Ones()));
 }
 
+/// Schemes with the dynamics of the arm of the paper.
+template <int N>
+void expect_none_with_dynamics() {
+  Chain<> chain;
+  for (int i = 0; i < 4; ++i) {
+    chain.joints.push_back({});
+    chain.joints.back().placement.p = {i > 0 ? 1.0 : 0.0, 0.0, 0.0};
+    chain.joints.back().moved = {1.0, {0.5, 0.0, 0.0}, Matrix<3, 3>::Identity() / 12.0};
+  }
+  const Dynamics<N> model(chain);
+  const auto z = NullSpace<N>{}.with_damping(2.0);
+  expect_none_in(BalancedTorque(model, 0.95, Vector<N>(Vector<4>::Ones()), 1.0, 1.0, z), "torque");
+  expect_none_in(MinimumEnergy(model, 1.0), "energy");
+}
+TEST(NoAllocation, in_schemes_with_dynamics) {
+  expect_none_with_dynamics<4>();
+  expect_none_with_dynamics<kOpen>();
+}
+
 [[nodiscard]] Vector<kOpen> panda_ready() {
   return Vector<7>{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785};
 }

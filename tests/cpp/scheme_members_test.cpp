@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "fpbm/model/dynamics.hpp"
 #include "fpbm/model/presets.hpp"
 #include "fpbm/model/serial_arm.hpp"
 #include "fpbm/objective/manipulability_ascent.hpp"
@@ -53,6 +54,8 @@ constexpr void expect_all_members() {
 TEST(SchemeMembers, of_the_schemes_of_the_library_are_complete) {
   expect_all_members<decltype(MVN<kJoints>())>();
   expect_all_members<decltype(FPBM<kJoints>(0.5, Motion::Ones(), 1, 1))>();
+  expect_all_members<MinimumTorqueScheme<Dynamics<kJoints>>>();
+  expect_all_members<MinimumEnergyScheme<Dynamics<kJoints>>>();
   using Ascent = ManipulabilityAscent<decltype(MAN<kJoints>()), SerialArm<kJoints>>;
   static_assert(require_members<Ascent, Pose, kJoints, double>());
 }

@@ -534,7 +534,7 @@ TWO_BRANCHES = """<robot name="two"><link name="base"/><link name="camera"/><lin
         (["panda", "--tip", "tool"], "--tip: is not a key of preset: must be one of name"),
         (["panda", "--radius", "-1"], "--radius = -1: must be positive and finite"),
         (["panda", "--alpha", "x"], "--alpha = 'x': must be a number"),
-        (["panda", "--scheme", "fbpm"], "fpbm; did you mean 'fpbm'?"),
+        (["panda", "--scheme", "fbpm"], "minimum_torque; did you mean 'fpbm'?"),
         (["panda", "--scheme", "man", "--alpha", "1"], "--alpha: is not a key of man: must be one of null_damping, "),
         (["panda", "--weights", "1,2"], "--weights has 2 entries: must have 7, one per joint"),
         (["panda", "--q0", "0,0"], "--q0 has 2 entries: must have 7, one per joint"),

@@ -80,6 +80,8 @@ SOME_SCHEMES = {
     "WMVNAcceleration": fp.WMVNAcceleration(W.tolist(), null_damping=1.0),
     "Balanced": fp.Balanced(0.4, W),
     "FPBM": fp.FPBM(1 / 3, np.linspace(1, 2, 7), 10.0, k2=25.0),
+    "MinimumEnergy": fp.MinimumEnergy(k=1 / 3),
+    "MinimumTorque": fp.MinimumTorque(alpha=0.98, weights=W, k1=1, k2=2, null_damping=2, **options(7)),
     "FPBM with all": fp.FPBM(0.6, W, k1=10, k2=25, null_damping=2, **options(7)),
 }
 

@@ -404,7 +404,7 @@ def test_invalid_files_are_rejected(tmp_path: Path) -> None:
 
 ARM = "[arm]\nkind = 'preset'\nname = 'panda'\n"
 SHAPES = "circle, lissajous, tricuspid, line, polyline, waypoints, at_speed"
-KINDS = "mvn, wmvn, man, wmvn_acceleration, balanced, fpbm"
+KINDS = "mvn, wmvn, man, wmvn_acceleration, balanced, fpbm, minimum_energy, minimum_torque"
 LAWS = "sin_squared, quintic, constant_speed"
 
 

@@ -11,7 +11,7 @@ from ..job import Motion
 from ..job.sections import job_errors
 from ..motion.comparison import comparison
 from ..motion.run import Run
-from ..schemes import SCHEMES
+from ..schemes import SCHEMES, WITHOUT_DYNAMICS
 from .plain import Writer, dark_option, import_viser, out_option, picture, write_files
 from .request import Request, motion_command
 from .text import summary
@@ -137,7 +137,9 @@ def _report(request: Request, motion: Motion, run: Run, out: Path | None, dark: 
     clear=True,
     keep=True,
 )
-@click.option("--schemes", metavar="NAMES", help=f"Schemes, separated by commas; default: {', '.join(SCHEMES)}.")
+@click.option(
+    "--schemes", metavar="NAMES", help=f"Schemes, separated by commas; default: {', '.join(WITHOUT_DYNAMICS)}."
+)
 @out_option
 @dark_option
 def compare(request: Request, schemes: str | None, out: Path | None, dark: bool) -> None:
@@ -149,7 +151,7 @@ def compare(request: Request, schemes: str | None, out: Path | None, dark: bool)
     joint velocities and accelerations, and the least manipulability. With --out, the folder gets compare.png, a saved
     run for each scheme, and job.toml.
     """
-    kinds = [name.strip() for name in schemes.split(",")] if schemes else list(SCHEMES)
+    kinds = [name.strip() for name in schemes.split(",")] if schemes else list(WITHOUT_DYNAMICS)
     for kind in kinds:
         if kind not in SCHEMES:
             raise click.ClickException(str(not_one_of("--schemes", kind, SCHEMES)))

@@ -25,7 +25,7 @@ from ..motion.comparison import columns
 from ..motion.sweeping import sweep
 from ..parameter import parameters
 from ..robots import Robot
-from ..schemes import SCHEMES
+from ..schemes import WITHOUT_DYNAMICS
 from ..urdf.capsules import capsules_of
 from ..worst import measure
 from .plain import OUT, PLACE, WIDTH, Plain, file_errors, read_arm, refuse_links
@@ -79,7 +79,7 @@ def bench(seconds: float, worst: bool, runs: int) -> None:
     click.echo(f"fpbm_cpp {__version__}, Python {platform.python_version()}, NumPy {np.__version__}, {machine}")
     click.echo(f"{click.wrap_text(HOW, WIDTH)}\n")
     rows = []
-    for kind, scheme in SCHEMES.items():
+    for kind, scheme in WITHOUT_DYNAMICS.items():
         times = [_median(_motion(case, kind).run, seconds) / EVALUATIONS for case in CASES]
         rows.append([scheme.__name__, *(f"{1e6 * each:.3f}" for each in times)])
     rates = [f"{_rate(_motion(case, 'fpbm'), seconds):.0f}" for case in CASES]

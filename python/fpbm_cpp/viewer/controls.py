@@ -13,11 +13,12 @@ from ..arms import Arm
 from ..joints import JointLimits
 from ..parameter import Parameter, parameters
 from ..robots import Robot
-from ..schemes import SCHEMES, Scheme
+from ..schemes import SCHEMES, WITHOUT_DYNAMICS, Scheme
 from ..skeleton import joint_labels
 
 SPEEDS = {"⅒ ×": 0.1, "¼ ×": 0.25, "½ ×": 0.5, "1 ×": 1.0, "2 ×": 2.0, "5 ×": 5.0}
 KINDS = {kind.__name__: kind for kind in SCHEMES.values()}
+_PLAIN = tuple(WITHOUT_DYNAMICS.values())
 GAINS = ("k1", "k2", "k")
 # Numbers of some schemes; each has a slider.
 NUMBERS = {
@@ -54,7 +55,8 @@ class Controls:
         self._on_change = on_change
         self._hidden = () if gains else GAINS
         with gui.add_folder("Scheme"):
-            self._kind = gui.add_dropdown("scheme", tuple(KINDS), hint="Redundancy resolution scheme")
+            shown = [name for name, kind in KINDS.items() if kind in _PLAIN or isinstance(scheme, kind)]
+            self._kind = gui.add_dropdown("scheme", shown, hint="Redundancy resolution scheme")
             self._initial = {name: known.usual if known.required else known.default for name, known in NUMBERS.items()}
             self._initial |= dict.fromkeys(self._hidden, 0.0)
             self._sliders = {name: _add_slider(gui, known, self._initial[name]) for name, known in NUMBERS.items()}
@@ -89,7 +91,8 @@ class Controls:
         self._kind.value = type(scheme).__name__
         for name, slider in self._sliders.items():
             _set(slider, getattr(scheme, name, self._initial[name]))
-        weights = getattr(scheme, "weights", np.ones(len(self._weights)))
+        given = getattr(scheme, "weights", None)
+        weights = np.ones(len(self._weights)) if given is None else given
         self._dense = weights.ndim == 2  # A dense matrix has no sliders and is not changed.
         if not self._dense:
             for slider, weight in zip(self._weights, weights.tolist()):

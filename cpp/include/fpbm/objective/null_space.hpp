@@ -68,6 +68,17 @@ class NullSpace {
     return with_constant(c);
   }
 
+  /// A copy with a further constant part of z, for as many joints as z.
+  [[nodiscard]] NullSpace plus(const Vector<N, Scalar>& added) const noexcept {
+    NullSpace changed = *this;
+    if (!has_constant_) {
+      changed.constant_ = changed.stiffness_ = changed.rest_ = filled<Vector<N, Scalar>>(added.size());
+      changed.has_constant_ = true;
+    }
+    changed.constant_ += added;
+    return changed;
+  }
+
   /// Bits of the continuous joints, for the rest posture.
   [[nodiscard]] NullSpace with_continuous_joints(JointBits joints) const {
     NullSpace changed = *this;
@@ -170,16 +181,8 @@ class NullSpace {
   }
 
   [[nodiscard]] NullSpace with_constant(const Vector<N, Scalar>& added) const {
-    NullSpace changed = *this;
-    if (!has_constant_) {
-      changed.constant_ = filled<Vector<N, Scalar>>(added.size());
-      changed.stiffness_ = filled<Vector<N, Scalar>>(added.size());
-      changed.rest_ = filled<Vector<N, Scalar>>(added.size());
-      changed.has_constant_ = true;
-    }
-    validation::require_size("rest_posture, limits or c", added.size(), changed.constant_.size());
-    changed.constant_ += added;
-    return changed;
+    if (has_constant_) validation::require_size("rest_posture, limits or c", added.size(), constant_.size());
+    return plus(added);
   }
 
   static constexpr Eigen::Index kSize = N == Eigen::Dynamic ? 0 : N;

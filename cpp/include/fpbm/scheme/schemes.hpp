@@ -4,9 +4,13 @@
 
 #include "fpbm/scheme/acceleration_scheme.hpp"
 #include "fpbm/scheme/detail/dense_weights.hpp"
+#include "fpbm/scheme/detail/minimum_energy.hpp"
+#include "fpbm/scheme/detail/minimum_torque.hpp"
 #include "fpbm/scheme/velocity_scheme.hpp"
 
 /// Schemes of the paper by name, with equation numbers of the paper (docs/equations.md): FPBM<7>(0.6, weights, 10, 25).
+///
+/// MinimumTorque(), BalancedTorque() and MinimumEnergy() are beside the paper, and need the Dynamics of the robot.
 ///
 /// weights is a vector (the diagonal of W), a matrix (W itself), or DiagonalWeights, DenseWeights, UnitWeights.
 /// null_space is the secondary motion z. singular is the damping near singular postures, none by default.
@@ -91,6 +95,37 @@ template <int N, typename Scalar = double, typename Weights>
 [[nodiscard]] auto WMVNAcceleration(const Weights& weights, const NullSpace<N, Scalar>& null_space = {},
                                     const SingularDamping<Scalar>& singular = named::undamped<Scalar>()) {
   return FPBM<N, Scalar>(Scalar(1), weights, Scalar(0), Scalar(0), null_space, singular);
+}
+
+/// Least torque: the qdd with the least |M qdd + h|² (MinimumTorqueScheme), with feedback as in (13). model: Dynamics
+/// of the robot. Set a null-space damping: without damping, long motions are unstable.
+template <typename Model>
+[[nodiscard]] MinimumTorqueScheme<Model> MinimumTorque(
+    const Model& model, named::NotDeduced<typename Model::Scalar> k1, named::NotDeduced<typename Model::Scalar> k2,
+    const NullSpace<Model::kDof, typename Model::Scalar>& null_space = {},
+    const SingularDamping<typename Model::Scalar>& singular = named::undamped<typename Model::Scalar>()) {
+  using Scalar = typename Model::Scalar;
+  return {model, Scalar(0), UnitWeights{}, k1, k2, null_space, singular};
+}
+
+/// Balance of least torque and WMVN (9) with feedback: qdd = (1−α) MinimumTorque + α WMVN.
+template <typename Model, typename Weights>
+[[nodiscard]] MinimumTorqueScheme<Model, named::WeightsOf<Model::kDof, typename Model::Scalar, Weights>> BalancedTorque(
+    const Model& model, named::NotDeduced<typename Model::Scalar> alpha, const Weights& weights,
+    named::NotDeduced<typename Model::Scalar> k1, named::NotDeduced<typename Model::Scalar> k2,
+    const NullSpace<Model::kDof, typename Model::Scalar>& null_space = {},
+    const SingularDamping<typename Model::Scalar>& singular = named::undamped<typename Model::Scalar>()) {
+  const auto W = named::weights_of<Model::kDof, typename Model::Scalar>(weights);
+  return {model, alpha, W, k1, k2, null_space, singular};
+}
+
+/// Least kinetic energy: the qd with the least qdᵀM qd (MinimumEnergyScheme), at velocity level.
+template <typename Model>
+[[nodiscard]] MinimumEnergyScheme<Model> MinimumEnergy(
+    const Model& model, named::NotDeduced<typename Model::Scalar> k = typename Model::Scalar(0),
+    const NullSpace<Model::kDof, typename Model::Scalar>& null_space = {},
+    const SingularDamping<typename Model::Scalar>& singular = named::undamped<typename Model::Scalar>()) {
+  return MinimumEnergyScheme<Model>(model, k, null_space, singular);
 }
 
 // NOLINTEND(readability-identifier-naming)

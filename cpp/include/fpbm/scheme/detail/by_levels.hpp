@@ -57,7 +57,7 @@ struct ByLevels {
     JointVector result;
     bool damped = false;
     Status status = resolve_levels(kinematics, reference, state, false, damped, result, first);
-    if (damped && !failed(status) && scheme.null_space.template active<Level::kVelocity>()) {
+    if (damped && !failed(status) && moves_at_rest(scheme)) {
       status = resolve_levels(kinematics, reference, state, true, damped, result, first);
     }
     if (failed(status)) return status;

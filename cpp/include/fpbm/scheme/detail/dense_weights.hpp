@@ -25,19 +25,21 @@ class DenseWeights {
       const Eigen::Index i = cholesky.lost_pivot();
       validation::fail(validation::element("weights", i, i), W(i, i), "larger: W is not positive definite");
     }
-    root_.resize(W.rows(), W.cols());
-    auto diagonal = filled<Vector<N, Scalar>>(W.rows());  // Diagonal of W⁻¹.
-    for (Eigen::Index j = 0; j < W.cols(); ++j) {
-      auto axis = filled<Vector<N, Scalar>>(W.rows());
-      axis(j) = Scalar(1);
-      const Vector<N, Scalar> column = cholesky.inverse_root(axis);
-      set_column(root_, j, column);
-      for (Eigen::Index i = 0; i < W.rows(); ++i) diagonal(i) += column(i) * column(i);
-    }
-    const Scalar largest = largest_magnitude(diagonal);
-    const Scalar scale = std::sqrt(largest);
-    root_ = entrywise(root_, [&](Eigen::Index i) { return root_.coeff(i) / scale; });
-    weights_ = entrywise(W, [&](Eigen::Index i) { return largest * W.coeff(i); });
+    set(W, [&](const Vector<N, Scalar>& axis) { return cholesky.inverse_root(axis); });
+  }
+
+  /// W = M, for a mass matrix M with its factorisation.
+  [[nodiscard]] static DenseWeights of(const Matrix<N, N, Scalar>& M, const Cholesky<N, Scalar>& cholesky) noexcept {
+    DenseWeights result;
+    result.set(M, [&](const Vector<N, Scalar>& axis) { return cholesky.inverse_root(axis); });
+    return result;
+  }
+  /// W = M². C = M⁻¹ is computed from M, so that the condition number of M² has no effect.
+  [[nodiscard]] static DenseWeights of_square(const Matrix<N, N, Scalar>& M,
+                                              const Cholesky<N, Scalar>& cholesky) noexcept {
+    DenseWeights result;
+    result.set(gram_of(M), [&](const Vector<N, Scalar>& axis) { return cholesky.solve(axis); });
+    return result;
   }
 
   void require_dof(Eigen::Index dof) const { validation::require_size("weights", root_.rows(), dof); }
@@ -74,6 +76,26 @@ class DenseWeights {
   }
 
  private:
+  DenseWeights() = default;
+
+  /// root(a): C a, for any C with C Cᵀ = W⁻¹.
+  template <typename Root>
+  void set(const Matrix<N, N, Scalar>& W, const Root& root) noexcept {
+    root_.resize(W.rows(), W.cols());
+    auto diagonal = filled<Vector<N, Scalar>>(W.rows());  // Diagonal of W⁻¹.
+    for (Eigen::Index j = 0; j < W.cols(); ++j) {
+      auto axis = filled<Vector<N, Scalar>>(W.rows());
+      axis(j) = Scalar(1);
+      const Vector<N, Scalar> column = root(axis);
+      set_column(root_, j, column);
+      for (Eigen::Index i = 0; i < W.rows(); ++i) diagonal(i) += column(i) * column(i);
+    }
+    const Scalar largest = largest_magnitude(diagonal);
+    const Scalar scale = std::sqrt(largest);
+    root_ = entrywise(root_, [&](Eigen::Index i) { return root_.coeff(i) / scale; });
+    weights_ = entrywise(W, [&](Eigen::Index i) { return largest * W.coeff(i); });
+  }
+
   static void require_symmetric(const Matrix<N, N, Scalar>& W) {
     validation::require_size("weights (columns)", W.cols(), W.rows());
     for (Eigen::Index j = 0; j < W.cols(); ++j) {

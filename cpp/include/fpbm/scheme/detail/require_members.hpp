@@ -28,6 +28,20 @@ template <typename Scheme, typename Task, typename State_, typename Motion>
 using ResolveRowsOf = decltype(std::declval<const Scheme&>().resolve_rows(
     std::declval<const Task&>(), std::declval<const State_&>(), std::declval<Motion&>()));
 
+template <typename Scheme>
+using MovesAtRestOf = decltype(std::declval<const Scheme&>().moves_at_rest());
+
+/// Whether the first level of a stack may have null-space motion at rest: the answer of the scheme, or whether its null
+/// space depends on the posture.
+template <typename Scheme>
+[[nodiscard]] bool moves_at_rest(const Scheme& scheme) noexcept {
+  if constexpr (kHas<Scheme, MovesAtRestOf>) {
+    return scheme.moves_at_rest();
+  } else {
+    return scheme.null_space.template active<Level::kVelocity>();
+  }
+}
+
 /// The members of every scheme. If a member is missing, the compiler prints a message. Always true.
 template <typename Scheme, typename Space, int N, typename Scalar>
 [[nodiscard]] constexpr bool require_members() noexcept {

@@ -24,6 +24,13 @@
 /// Otherwise, and with lanes, a FactorSolver of J and JC answers.
 namespace fpbm {
 
+/// Whether the type of a scheme shows that J⁺b is not necessary. A law without J⁺b has a member type OnlyWeighted.
+template <typename Scheme, typename = void>
+inline constexpr bool kOnlyWeighted =
+    Scheme::kLevel == Level::kVelocity || std::is_same_v<std::decay_t<decltype(Scheme::weights)>, UnitWeights>;
+template <typename Scheme>
+inline constexpr bool kOnlyWeighted<Scheme, std::void_t<typename Scheme::OnlyWeighted>> = true;
+
 /// The law by a FactorSolver, of J and JC if Value is Pair<Scalar>. All rows of the task are in metres. undamped: the
 /// result if damping does not act, or null. With lanes, the result is NaN in each lane in which damping may act.
 /// Flattened, since a compiler may not inline small calls in a large translation unit.
@@ -74,8 +81,7 @@ template <int kTurns, typename Scheme, int M, int N, typename Scalar>
     const auto b = in_metres(task.b), xd = in_metres(task.xd);
     return solve_by_factors<0>(scheme, TaskEquation<M, N, Scalar>{J, Jd, b, xd}, length, z, undamped, u);
   } else {
-    constexpr bool kUnit = std::is_same_v<std::decay_t<decltype(scheme.weights)>, UnitWeights>;
-    if constexpr (Scheme::kLevel == Level::kVelocity || kUnit) {
+    if constexpr (kOnlyWeighted<Scheme>) {
       return solve_by_factors<Scalar>(scheme, task, z, undamped, u);
     } else {
       if constexpr (!kInLanes<Scalar>) {  // Each lane may have its own alpha.
