@@ -12,12 +12,12 @@ namespace fpbm {
 /// A = [ẇ]× + [w]×[w]×, by rows: a point of a link at the distance r from another point has the additional acceleration
 /// A r.
 template <typename Value>
-struct Turning {
+struct AngularMotion {
   Three<Value> x;
   Three<Value> y;
   Three<Value> z;
 
-  [[gnu::always_inline]] Turning(const Three<Value>& w, const Three<Value>& wd) noexcept {
+  [[gnu::always_inline]] AngularMotion(const Three<Value>& w, const Three<Value>& wd) noexcept {
     const Value xx = w.x * w.x;
     const Value yy = w.y * w.y;
     const Value zz = w.z * w.z;
@@ -76,7 +76,7 @@ template <bool kTree, int N, typename Scalar, int Joints>
     const Three<Two> carried = rate * cross(w, axes.z);
     const Three<Two> driven = acceleration * axes.z;
     const Three<Two> wd = angular.outward(i, {kTree ? link.turns * (driven + carried) : driven + carried})[0];
-    const Turning<Two> A(w, wd);
+    const AngularMotion<Two> A(w, wd);
     const auto [x, y, z, origin] = carriers.of_carriers(i, {A.x, A.y, A.z, p});
     const Three<Two> r = p - origin;
     Three<Two> added{dot(x, r), dot(y, r), dot(z, r)};
