@@ -30,6 +30,7 @@ class AnyBounds {
   [[nodiscard]] Clearance<kDynamic>& clearance() noexcept { return all_.get<Clearance<kDynamic>>(); }
 
   [[nodiscard]] bool empty() const noexcept { return all_.empty(); }
+  [[nodiscard]] bool bounds_torques() const noexcept { return all_.bounds_torques(); }
   [[nodiscard]] double slower_stop(double fraction) const noexcept { return all_.slower_stop(fraction); }
   void require(const JointVector& q);
   template <Level kLevel>

@@ -63,7 +63,7 @@ FREE = {"path": "circle", "scheme": "fpbm"}  # The kind if the section is missin
 def known(section: str, kind: object = None) -> dict[str, Parameter]:
     """The keys of a section of this kind; none if the kind does not exist."""
     only = len(SECTIONS[section]) == 1
-    maker = SECTIONS[section].get(section if only else str(kind))
+    maker = SECTIONS[section].get(section if only or kind is None else str(kind))
     return keys(maker) if maker else {}
 
 

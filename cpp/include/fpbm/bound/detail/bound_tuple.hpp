@@ -26,6 +26,11 @@ class BoundTuple {
     return std::get<Bound>(each_);
   }
 
+  /// Whether a bound may accept a slower stop, or a tick that is nearer to the planned stop, after a refused tick.
+  [[nodiscard]] bool bounds_torques() const noexcept {
+    return ((kHas<Each, bound_member::SlowerStop, double> && !std::get<Each>(each_).empty()) || ...);
+  }
+
  protected:
   BoundTuple() = default;
   template <typename First, typename... More>

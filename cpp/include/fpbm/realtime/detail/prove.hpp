@@ -5,41 +5,50 @@
 
 namespace fpbm {
 
-/// Third step of a tick: the state after a tick with the motion u, if all bounds accept the tick and the stop after the
-/// tick, which becomes the planned stop. Otherwise, or if every joint brakes, the tick is the next tick of the planned
-/// stop (docs/clearance.md, Guarantees).
+/// Whether all bounds accept a tick to the state `next` and a stop after the tick, which becomes the planned stop. If a
+/// bound needs less deceleration, slower stops are tried.
+template <typename TrackerState>
+[[nodiscard]] bool accept(TrackerState& state, const typename TrackerState::JointState& next) noexcept {
+  using Scalar = typename TrackerState::Scalar;
+  using PlannedStop = std::decay_t<decltype(state.stop)>;
+  const auto& from = state.tick.joints;
+  const typename TrackerState::JointVector last = (next.qd - from.qd) / state.dt();
+  for (Scalar fraction(1); fraction > Scalar(0); fraction = state.bounds.slower_stop(fraction)) {
+    const auto stop = PlannedStop::after(state.limits(), from, next, last, fraction);
+    if (!state.bounds.accepts(state.limits(), from, stop)) continue;
+    state.stop = stop;
+    return true;
+  }
+  return false;
+}
+
+/// Third step of a tick: the state after a tick with the motion u, if all bounds accept the tick and a stop after the
+/// tick. Otherwise, or if every joint brakes, the tick is the next tick of the planned stop (docs/clearance.md,
+/// Guarantees). With bounds on torque, motions between u and this tick are tried before.
 template <typename TrackerState>
 [[nodiscard]] typename TrackerState::JointState prove(TrackerState& state, const typename TrackerState::JointVector& u,
                                                       typename TrackerState::Result& result) noexcept {
   using Scalar = typename TrackerState::Scalar;
   using JointVector = typename TrackerState::JointVector;
-  using PlannedStop = std::decay_t<decltype(state.stop)>;
   const auto& tick = state.tick;
   typename TrackerState::JointState next = tick.after(u);
   if constexpr (TrackerState::kBounded) {
     const bool braking = state.brakes(result.status);
-    if (state.bounds.empty()) return next;
+    if (state.bounds.empty() || (!braking && accept(state, next))) return next;
     auto plan = state.stop.plan;
     const JointVector qdd = plan.next(state.limits(), tick.joints, tick.last);
-    const JointVector slower =
+    const JointVector stopping =
         TrackerState::kLevel == Level::kAcceleration ? qdd : JointVector(tick.joints.qd + state.dt() * qdd);
-    for (Scalar part(1); !braking && part > Scalar(0.05); part /= Scalar(2)) {
-      if (part < Scalar(1)) next = tick.after(JointVector(slower + part * (u - slower)));
-      const JointVector last = (next.qd - tick.joints.qd) / state.dt();
-      for (Scalar fraction(1); fraction > Scalar(0); fraction = state.bounds.slower_stop(fraction)) {
-        const auto stop = PlannedStop::after(state.limits(), tick.joints, next, last, fraction);
-        if (state.bounds.accepts(state.limits(), tick.joints, stop)) {
-          state.stop = stop;
-          if (part < Scalar(1)) {
-            multiply_scale(result, part);
-            result.status = Status::kSlowed;
-          }
-          return next;
-        }
-      }
+    // Without these motions, the accelerations of a Panda with 3 kg jump from tick to tick at the edge of its torques.
+    for (Scalar part(0.5); !braking && state.bounds.bounds_torques() && part > Scalar(0.05); part /= Scalar(2)) {
+      next = tick.after(JointVector(stopping + part * (u - stopping)));
+      if (!accept(state, next)) continue;
+      multiply_scale(result, part);
+      result.status = worse(result.status, Status::kSlowed);
+      return next;
     }
     state.stop.plan = plan;
-    next = tick.after(slower);
+    next = tick.after(stopping);
     multiply_scale(result, Scalar(0));
     if (!braking) result.status = Status::kBlocked;
   }
