@@ -1,6 +1,7 @@
 #include <pybind11/typing.h>
 
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -102,6 +103,22 @@ const AnyDynamics& Model::dynamics() const {
   return *dynamics_;
 }
 
+std::shared_ptr<const AnyDynamics> Model::dynamics_if_known() const noexcept {
+  try {
+    (void)dynamics();
+  } catch (const std::invalid_argument&) {
+    return nullptr;
+  }
+  return dynamics_;
+}
+
+JointVector torque_of(const AnyDynamics& dynamics, const JointVector& q, const JointVector& qd,
+                      const JointVector& qdd) {
+  RobotState<kDynamic> state;
+  dynamics.robot().update(q, qd, state);
+  return dynamics.inverse_dynamics(state, qdd);
+}
+
 void bind_dynamics(py::module_& m) {
   auto model = py::reinterpret_borrow<py::class_<Model>>(m.attr("Model"));
   const auto q = py::arg("q");
@@ -114,6 +131,9 @@ void bind_dynamics(py::module_& m) {
             return py::typing::Tuple<py::int_, Array>(py::make_tuple(link, array_of(offset)));
           },
           py::arg("frame"), "Number of the link of a frame, and the frame in the frame of the link, shape (4, 4).")
+      .def_property_readonly(
+          "has_dynamics", [](const Model& self) { return self.dynamics_if_known() != nullptr; },
+          "Whether every drive moves a mass and all inertias are physical, so that torques are known.")
       .def("inverse_dynamics", &inverse_dynamics, q, qd, py::arg("qdd"),
            R"(Torques of the drives for a motion: M(q) qdd + h(q, qd), shape (n,) [Nm], [N] for prismatic joints.
 
