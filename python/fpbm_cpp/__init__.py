@@ -45,8 +45,8 @@ from .paths import *
 from .robots import *
 from .schemes import *
 from .task_bounds import TaskBounds
-from .torque_bounds import TorqueBounds
 from .tasks import *
+from .torque_bounds import TorqueBounds
 from .tuning import TuneInterrupted, Tuning, tune
 from .viewer import servo, view
 
