@@ -13,11 +13,12 @@ from ..arms import Arm, SerialArm
 from ..clearance import CLEARANCES, Clearance
 from ..errors import ParameterError, suggestion, wrong
 from ..joints import JointLimits
+from ..mechanism import PAYLOAD, Payload
 from ..parameter import NOT_NEGATIVE, POSITIVE, Data, Parameter, data, parameter
 from ..paths import PATHS
 from ..robots import ROBOTS, Robot
 from ..schemes import SCHEMES
-from ..table import BOUNDS, Makers, from_table, is_by_task, keys, problems
+from ..table import BOUNDS, Makers, carrying, from_table, is_by_task, keys, problems
 from ..tasks import TASKS
 
 Table = dict[str, Any]
@@ -63,7 +64,7 @@ FREE = {"path": "circle", "scheme": "fpbm"}  # The kind if the section is missin
 def known(section: str, kind: object = None) -> dict[str, Parameter]:
     """The keys of a section of this kind; none if the kind does not exist."""
     only = len(SECTIONS[section]) == 1
-    maker = SECTIONS[section].get(section if only else str(kind))
+    maker = SECTIONS[section].get(section if only or kind is None else str(kind))
     return keys(maker) if maker else {}
 
 
@@ -138,11 +139,15 @@ def arm_of(job: Table) -> Arm | Robot:
     if not limits or kind not in ("urdf", "robot") or "file" in job.get("clearance", {}):
         arm: Arm | Robot = make("arm", job["arm"])
         return arm
+    payload = said.pop(PAYLOAD.name, None)
     with job_errors():
         own = JointLimits(**limits)
         read = partial(SerialArm.from_urdf, tip=said.pop("tip", "")) if kind == "urdf" else Robot.from_urdf
         try:
-            return read(said.pop("file"), **said, limits=own)
+            arm = read(said.pop("file"), **said, limits=own)
+            if payload is not None:
+                arm = carrying(arm, from_table(payload, Payload, PAYLOAD.name))
+            return arm
         except ParameterError as error:
             raise error.within("arm") from None
         except ValueError as error:
