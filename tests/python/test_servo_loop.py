@@ -101,7 +101,7 @@ def test_limits_are_kept_for_any_handle_jump(which, task, data):
     kept(loop, q0, ticks)
     shares = loop.strip.shares
     assert (shares[:3] <= 1 + 1e-6).all()
-    assert ((shares[4] >= 0) & (shares[4] <= 1)).all()
+    assert ((shares[-1] >= 0) & (shares[-1] <= 1)).all()
 
 
 @pytest.mark.parametrize(("which", "task"), KINDS)
@@ -227,21 +227,20 @@ def test_the_strip_records_the_ticks():
     qd, qdd = np.array([t.qd for t in ticks]), np.array([t.qdd for t in ticks])
     jerk = np.diff(qdd, axis=0, prepend=0) / loop.dt
     expected = [np.abs(qd / limits.velocity), np.abs(qdd / limits.acceleration), np.abs(jerk / limits.jerk)]
-    unknown = np.zeros(len(ticks))  # The torque of an arm without masses.
-    expected = np.array([*(each.max(axis=1) for each in expected), unknown, [t.scale for t in ticks]])
+    expected = np.array([*(each.max(axis=1) for each in expected), [t.scale for t in ticks]])
     np.testing.assert_allclose(loop.strip.shares, expected)
     t, worst = loop.strip.curves()
     there = ~np.isnan(worst[0])
     assert t[-1] == pytest.approx(3.0, abs=0.06)
-    np.testing.assert_allclose(worst[:4, there].max(axis=1), expected[:4].max(axis=1), rtol=1e-12)
-    assert worst[4, there].min() == expected[4].min()
+    np.testing.assert_allclose(worst[:3, there].max(axis=1), expected[:3].max(axis=1), rtol=1e-12)
+    assert worst[3, there].min() == expected[3].min()
     first = worst[:, there]
     play(loop, clock, 0.52, 0.013)  # A peak keeps its height while it moves along the strip.
     later = loop.strip.curves()[1]
     np.testing.assert_array_equal(later[:, ~np.isnan(later[0])][:, : first.shape[1]], first)
     play(loop, clock, 20)
     t, worst = loop.strip.curves()
-    assert (t[-1] - t[0], worst.shape) == (pytest.approx(9.95), (5, 200))
+    assert (t[-1] - t[0], worst.shape) == (pytest.approx(9.95), (4, 200))
     assert worst[0].max() < 0.01
 
 
@@ -249,9 +248,9 @@ def test_unbounded_quantities_have_no_share():
     loop, clock = a_loop("planar", "position", limits=None)
     loop.push([1.0, 2.0])
     play(loop, clock, 1)
-    assert loop.strip.bounded == (False,) * 4
-    assert (loop.strip.shares[:4] == 0).all()
-    assert ServoLoop(PANDA, fpbm(7), READY).strip.bounded == (True,) * 4
+    assert loop.strip.bounded == (False, False, False)
+    assert (loop.strip.shares[:3] == 0).all()
+    assert ServoLoop(PANDA, fpbm(7), READY).strip.bounded == (True, True, True, True)
 
 
 def test_a_target_filter_bounds_the_speed_of_the_tip():

@@ -38,15 +38,17 @@ class Strip:
     shares has a row for each quantity and a column for each tick of the last ten seconds, shape (5, N); 0 without a
     bound. A stack has a scale for each level, shape (4 + levels, N). The jerk of a tick is the difference of its mean
     acceleration from the mean acceleration of the previous tick, divided by the length of a tick. The torque is the
-    torque of inverse dynamics at the end of the tick; without a bound if it is not known.
+    torque of inverse dynamics at the end of the tick. An arm without masses or efforts has no row for torques.
     """
 
     def __init__(
         self, arm: Arm | Robot, limits: JointLimits, dt: float, bounds: Sequence[Bound] = (), levels: int = 1
     ) -> None:
         self._arm, self._dt, self._count = arm, dt, 0
-        torques = largest_torques(arm, limits, bounds) if arm.has_dynamics else np.full(arm.dof, np.inf)
-        self._bounds = np.array([limits.velocity, limits.acceleration, limits.jerk, torques], dtype=float)
+        self._bounds = np.array([limits.velocity, limits.acceleration, limits.jerk], dtype=float)
+        torques = largest_torques(arm, limits, bounds)
+        if arm.has_dynamics and np.isfinite(torques).any():
+            self._bounds = np.vstack([self._bounds, torques])
         self._before = np.zeros(arm.dof)
         self._width = max(round(SECONDS / dt / POINTS), 1)
         self.shares: Array = np.empty((len(self._bounds) + levels, 0))
@@ -55,8 +57,10 @@ class Strip:
         """Add consecutive ticks, at least one."""
         q, qd, qdd = (np.array([getattr(tick, name) for tick in ticks]) for name in ("q", "qd", "qdd"))
         jerk = np.diff(qdd, axis=0, prepend=self._before[None]) / self._dt
-        torque = self._arm.inverse_dynamics(q, qd, qdd) if self.bounded[3] else np.zeros_like(q)
-        shares = [(np.abs(each) / bound).max(axis=1) for each, bound in zip((qd, qdd, jerk, torque), self._bounds)]
+        motions = [qd, qdd, jerk]
+        if len(self._bounds) > len(motions):
+            motions.append(self._arm.inverse_dynamics(q, qd, qdd))
+        shares = [(np.abs(each) / bound).max(axis=1) for each, bound in zip(motions, self._bounds)]
         scales = np.array([tick.scale if tick.scales is None else tick.scales for tick in ticks])
         new = np.vstack([*shares, scales.reshape(len(ticks), -1).T])
         self._before, self._count = qdd[-1], self._count + len(ticks)
@@ -64,11 +68,11 @@ class Strip:
 
     @property
     def bounded(self) -> tuple[bool, ...]:
-        """Whether any joint has a bound on speed, acceleration, jerk, torque."""
+        """Whether any joint has a bound on speed, acceleration, jerk and, if there is a row, torque."""
         return tuple(np.isfinite(self._bounds).any(axis=1).tolist())
 
     def curves(self) -> tuple[Array, Array]:
-        """Times [s], shape (POINTS,), and the worst of the interval that ends at each time, shape (4 + levels, POINTS).
+        """Times [s], shape (POINTS,), and the worst of the interval that ends at each time, shape (rows, POINTS).
 
         An interval always has the same ticks, so a peak keeps its height while the chart scrolls. NaN before the start.
         """

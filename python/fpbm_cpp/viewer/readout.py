@@ -190,10 +190,11 @@ def _rows(loop: ServoLoop) -> Iterator[tuple[str, ...]]:
     there = worst[:, ~np.isnan(worst[0])]
     now, far = "", ""
     yield "th", "largest fraction of a bound", "now", f"in {SECONDS:g} s"
-    names = [f"joint {name}" for name in NAMES]
-    for i, (name, bounded) in enumerate(zip([*names, *_scales(loop)], [*loop.strip.bounded, *[True] * len(worst)])):
+    limited = loop.strip.bounded
+    names = [f"joint {name}" for name in NAMES[: len(limited)]]
+    for i, (name, bounded) in enumerate(zip([*names, *_scales(loop)], [*limited, *[True] * len(worst)])):
         if there.size:
-            worst_of = np.max if i < len(NAMES) else np.min
+            worst_of = np.max if i < len(limited) else np.min
             now, far = (f"{100.0 * x:.0f} %" for x in (there[i, -1], worst_of(there[i])))
         yield "td", name, *((now, far) if bounded else ("no bound", ""))
     limits, q, tick = loop.limits, loop.q, loop.tick
