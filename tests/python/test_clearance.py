@@ -364,7 +364,7 @@ BALL = fp.Capsule(0, [0, 0, 0], [0, 0, 0], 0.1, "ball")
         (lambda: CLEARANCE.nearest(PANDA, [0, 0]), "q has 2 entries: must have 7, one per joint"),
         (
             lambda: fp.Tracker(PANDA, fp.MAN(), READY, bounds=[3]),
-            "bounds: must be a Clearance and TaskBounds in a sequence",
+            "bounds: must be a Clearance, TaskBounds and TorqueBounds in a sequence",
         ),
         (
             lambda: fp.track(PANDA, THROUGH, fp.MAN(), READY, bounds=[fp.Clearance(CAPSULES, margin=0.3)]),

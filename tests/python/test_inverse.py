@@ -324,7 +324,7 @@ def test_a_solver_is_made_once() -> None:
         ({"target": np.eye(4), "starts": 0}, r"starts = 0: must be at least 1"),
         ({"target": np.eye(4), "tolerance": -1}, r"tolerance = -1: must be positive"),
         ({"target": np.eye(4), "task": "twist"}, r"task = 'twist': must be 'position' or 'pose'"),
-        ({"target": np.eye(4), "bounds": 3}, r"bounds: must be a Clearance and TaskBounds in a sequence"),
+        ({"target": np.eye(4), "bounds": 3}, r"bounds: must be a Clearance, TaskBounds and TorqueBounds in a sequence"),
         ({"target": np.eye(4), "stack": fp.Stack(fp.PoseTask())}, r"target: must be a dictionary"),
         ({"target": {"elbow": np.eye(4)}, "stack": fp.Stack(fp.PoseTask())}, r"task = 'elbow': must be a task"),
         ({"target": np.zeros((3, 4, 4)) + np.eye(4), "start": np.zeros((2, 7))}, r"start's number of rows = 2"),
