@@ -375,7 +375,7 @@ def test_options_of_track(call: Callable[..., Any], tmp_path: Path) -> None:
         (["--payload", "heavy"], "--payload: mass = 'heavy': must be a number"),
         (["--torque-bounds", "2"], "--torque-bounds = 2: must be in [0, 1]"),
         (["--torque-bounds", "1", "--scheme", "mvn"], "must be given with a scheme at acceleration level"),
-        (["--payload", "30", "--torque-bounds", "1"], "must be able to hold its posture"),
+        (["--payload", "30", "--torque-bounds", "1"], "Error: joint 'panda_joint2': torque at rest = 92"),
     ],
 )
 def test_wrong_options(call: Callable[..., Any], options: list[str], message: str) -> None:

@@ -73,7 +73,10 @@ class JobOption(click.Option):
 
 
 BASE = "Base link of a URDF file. For a robot: fixed, or planar, which moves along x and y and rotates about z."
-PAYLOAD = "Mass of a payload at the tip, and centre of mass in the frame of the tip.  [kg, m; default: at the tip]"
+PAYLOAD = (
+    "Mass of a payload at the tip, and centre of mass in the frame of the tip. For a robot, a job has payload.frame.  "
+    "[kg, m; default: at the tip]"
+)
 TORQUES = (
     "Bound the torques to this fraction of the arm's efforts, for schemes at acceleration level; keeps joint limits. "
     "Accelerations are lower than their bounds where the torques need it."

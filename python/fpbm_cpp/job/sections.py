@@ -108,6 +108,7 @@ def job_errors() -> Iterator[None]:
         section, inside, _ = error.name.partition(".")
         # The key task without a section is run.task.
         named = section.partition("[")[0] in SECTIONS and bool(inside or section != "task")
+        named |= error.name.startswith("joint '")  # A joint is not a key.
         raise JobError(error if named else error.within(OWNERS.get(error.name, "run"))) from None
 
 

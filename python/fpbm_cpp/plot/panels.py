@@ -329,7 +329,8 @@ def choose(run: Run, panels: str | Sequence[str] | None) -> dict[str, Panel]:
 
     By default OVERVIEW, and the torques if the motion has bounds on torques.
     """
-    usual = (*OVERVIEW, "torques") if torque_bounds_among(run.options.get("bounds") or ()) else OVERVIEW
+    bounded = torque_bounds_among(run.options.get("bounds") or ()) is not None
+    usual = tuple(name for name in PANELS if name in OVERVIEW or (bounded and name == "torques"))
     asked = usual if panels is None else (panels,) if isinstance(panels, str) else tuple(panels)
     for name in asked:
         if name not in PANELS:
