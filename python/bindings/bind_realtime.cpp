@@ -100,13 +100,13 @@ class PyTracker {
       : dof_(model.dof()),
         dt_(options.dt),
         scheme_(scheme.with_null_damping(options.null_damping)),
-        limits_(limits_of(model, limits)),
-        dynamics_(scheme.level == Level::kAcceleration ? model.dynamics_if_known() : nullptr) {
+        limits_(limits_of(model, limits)) {
     State<kDynamic> start{joint_vector(q0, "q0", dof_), JointVector::Zero(dof_)};
     if (qd0) start.qd = joint_vector(*qd0, "qd0", dof_);
     const JointVector before = qdd0 ? joint_vector(*qdd0, "qdd0", dof_) : JointVector::Zero(dof_);
     const AnyBounds further = bounds_of(model, given);
     const TrackerStart from{start, options, limits_, before, further};
+    if (scheme_.level == Level::kAcceleration) dynamics_ = model.dynamics_if_known();
     if (!stack.is_none()) {
       any_ = std::make_unique<StackLoop>(read_stack(stack, model), scheme, from);
       return;

@@ -134,7 +134,7 @@ def test_a_run_keeps_its_bounds():
             "frame = 'hand': must be a frame, or the joint of a link: 'base', 'tip'",
         ),
         (lambda: tracker(fp.TaskBounds(fp.PositionTask(), upper=0.1)), "is beyond the bound 'upper z of position'"),
-        (lambda: tracker(3), "bounds: must be a Clearance, TaskBounds and TorqueBounds"),
+        (lambda: tracker(3), "bounds: must be a Clearance, TaskBounds"),
     ],
 )
 def test_bad_bounds(make, words):
