@@ -1,7 +1,7 @@
 #include <pybind11/typing.h>
 
-#include <Eigen/Eigenvalues>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -12,53 +12,6 @@
 
 namespace fpbm::bindings {
 namespace {
-
-/// Throws std::invalid_argument unless an inertia about the centre of mass is the inertia of some body: symmetric, with
-/// principal moments that are not negative, of which no moment exceeds the sum of the other two.
-void require_physical(const validation::Argument& name, const LinkInertia<>& link) {
-  constexpr double kRelative = 1e-4;   // Published numbers are rounded to 4 digits.
-  constexpr double kAbsolute = 1e-12;  // [m²] A radius of gyration below 1 µm is round-off.
-  constexpr const char* kRemedy = ": correct the inertia of the link that the joint moves";
-  const Matrix<3, 3>& inertia = link.inertia;
-  const double least = kRelative * inertia.cwiseAbs().maxCoeff() + kAbsolute * link.mass;
-  if ((inertia - inertia.transpose()).cwiseAbs().maxCoeff() > least) {
-    validation::reject(name + ".inertia", ": must be symmetric", kRemedy);
-  }
-  const Eigen::Vector3d moments = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia).eigenvalues();
-  if (moments(0) < -least) {
-    validation::reject_value(name + ".inertia", moments(0), " has the principal moment ", moments(0),
-                             " kg m^2: must not be negative", kRemedy);
-  }
-  if (moments(2) > moments(0) + moments(1) + least) {
-    validation::reject_value(
-        name + ".inertia", moments(2), " has the principal moments ", moments(0), ", ", moments(1), " and ", moments(2),
-        " kg m^2: must satisfy the triangle inequality, no moment above the sum of the others", kRemedy);
-  }
-}
-
-/// Throws std::invalid_argument unless each drive moves a mass or has a rotor inertia, and all inertias are physical.
-void require_inertia(const Tree<>& tree) {
-  const auto count = tree.joints.size();
-  const auto name = [&](std::size_t i) { return chain_check::name_of(tree, static_cast<Eigen::Index>(i)); };
-  std::vector<bool> moves(count);  // Whether the joint, or a joint that follows the joint, moves a mass.
-  for (std::size_t i = count; i-- > 0;) {
-    const auto& [joint, parent] = tree.joints[i];
-    require_physical(name(i), joint.moved);
-    if (joint.moved.mass > 0.0 || joint.moved.inertia.norm() > 0.0) moves[i] = true;
-    if (moves[i] && parent > 0) moves[static_cast<std::size_t>(parent) - 1] = true;
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    const Joint<>& joint = tree.joints[i].joint;
-    if (joint.drive.rotor_inertia > 0.0) moves[i] = true;
-    if (moves[i] && joint.mimic.joint >= 0) moves[static_cast<std::size_t>(joint.mimic.joint)] = true;
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    if (tree.joints[i].joint.mimic.joint >= 0 || moves[i]) continue;
-    validation::reject(name(i),
-                       " moves no mass: dynamics need masses: give mass, center and inertia of fp.Joint, masses of "
-                       "fp.PlanarArm, or <inertial> in the URDF file");
-  }
-}
 
 /// Values of joints: one row for a joint vector, or K rows for an array of shape (K, n).
 RowMajor rows_of(const ArrayLike& argument, const char* name, const Model& model, py::ssize_t rows) {
@@ -130,17 +83,13 @@ Energy energy(const Array& values) {
 
 Energy kinetic_energy(const Model& model, const ArrayLike& q, const ArrayLike& qd) {
   return energy(in_states(model, q, qd, {}, [](const auto& dynamics, const auto& state, auto, double* out) {
-    *out = 0.5 * state.qd.dot(dynamics.mass_matrix(state) * state.qd);
+    *out = dynamics.kinetic_energy(state);
   }));
 }
 
 Energy potential_energy(const Model& model, const ArrayLike& q) {
-  return energy(in_states(model, q, {}, {}, [&](const auto& dynamics, const auto& state, auto, double* out) {
-    *out = 0.0;
-    for (int link = 1; link <= model.robot.joints(); ++link) {
-      const auto& [mass, centre] = model.robot.mass(link);
-      *out -= mass * dynamics.gravity().dot(model.robot.point(state, link, centre));
-    }
+  return energy(in_states(model, q, {}, {}, [](const auto& dynamics, const auto& state, auto, double* out) {
+    *out = dynamics.potential_energy(state);
   }));
 }
 
@@ -152,6 +101,22 @@ const AnyDynamics& Model::dynamics() const {
     dynamics_ = std::make_shared<const AnyDynamics>(tree, gravity);
   }
   return *dynamics_;
+}
+
+std::shared_ptr<const AnyDynamics> Model::dynamics_if_known() const noexcept {
+  try {
+    (void)dynamics();
+  } catch (const std::invalid_argument&) {
+    return nullptr;
+  }
+  return dynamics_;
+}
+
+JointVector torque_of(const AnyDynamics& dynamics, const JointVector& q, const JointVector& qd,
+                      const JointVector& qdd) {
+  RobotState<kDynamic> state;
+  dynamics.robot().update(q, qd, state);
+  return dynamics.inverse_dynamics(state, qdd);
 }
 
 void bind_dynamics(py::module_& m) {
@@ -166,6 +131,9 @@ void bind_dynamics(py::module_& m) {
             return py::typing::Tuple<py::int_, Array>(py::make_tuple(link, array_of(offset)));
           },
           py::arg("frame"), "Number of the link of a frame, and the frame in the frame of the link, shape (4, 4).")
+      .def_property_readonly(
+          "has_dynamics", [](const Model& self) { return self.dynamics_if_known() != nullptr; },
+          "Whether every drive moves a mass and all inertias are physical, so that torques are known.")
       .def("inverse_dynamics", &inverse_dynamics, q, qd, py::arg("qdd"),
            R"(Torques of the drives for a motion: M(q) qdd + h(q, qd), shape (n,) [Nm], [N] for prismatic joints.
 

@@ -20,6 +20,13 @@
 namespace fpbm::bindings {
 namespace {
 
+/// The start of a tick: the state, the nearest pair, and the dynamics, null if torques are not known.
+struct TickStart {
+  State<kDynamic> state;
+  std::optional<PyNearest> nearest;
+  std::shared_ptr<const AnyDynamics> dynamics;
+};
+
 /// Result of one tick. The arrays of Python are made when a program reads the attributes.
 struct PyTick {
   JointVector q;
@@ -29,11 +36,15 @@ struct PyTick {
   double scale;
   JointBits saturated;
   Eigen::VectorXd error;
-  std::optional<PyNearest> nearest;
+  TickStart start;
   Eigen::VectorXd scales;                         ///< For a stack: scale of each level.
   std::shared_ptr<const StackLoop::Parts> parts;  ///< For a stack: the tasks of the error's entries.
 
   [[nodiscard]] py::array_t<bool> saturated_joints() const { return array_of(saturated, q.size()); }
+  [[nodiscard]] std::optional<Array> torque() const {
+    const auto& [state, nearest, dynamics] = start;
+    return dynamics ? std::optional(array_of(torque_of(*dynamics, state.q, state.qd, qdd))) : std::nullopt;
+  }
   [[nodiscard]] std::optional<Array> level_scales() const {
     return parts ? std::optional(array_of(scales)) : std::nullopt;
   }
@@ -50,21 +61,14 @@ struct PyTick {
 };
 
 template <typename Space>
-PyTick python_tick(const Tick<Space, kDynamic>& tick, const std::optional<PyNearest>& nearest) {
-  return {tick.q, tick.qd, tick.qdd, tick.status, tick.scale, tick.saturated, tick.error, nearest, {}, {}};
+PyTick python_tick(const Tick<Space, kDynamic>& tick, TickStart start) {
+  return {tick.q, tick.qd, tick.qdd, tick.status, tick.scale, tick.saturated, tick.error, std::move(start), {}, {}};
 }
 
 /// For a stack.
-PyTick python_tick(const StackLoop& loop, const StackLoop::Result& tick, const std::optional<PyNearest>& nearest) {
-  return {tick.q,         tick.qd,          tick.qdd, tick.status,       tick.scale,
-          tick.saturated, loop.error(tick), nearest,  loop.scales(tick), loop.parts()};
-}
-
-/// The result of take() for a tracker in a posture, with the nearest pair in the posture.
-template <typename Tracker, typename Take>
-PyTick tick_at(Tracker& tracker, const JointVector& q, Take&& take) {
-  const std::optional<PyNearest> nearest = nearest_at(tracker.bounds().clearance(), q);
-  return python_tick(take(), nearest);
+PyTick python_tick(const StackLoop& loop, const StackLoop::Result& tick, TickStart start) {
+  return {tick.q,         tick.qd,          tick.qdd,         tick.status,       tick.scale,
+          tick.saturated, loop.error(tick), std::move(start), loop.scales(tick), loop.parts()};
 }
 
 /// A tracker of one task or of a stack of tasks.
@@ -103,6 +107,7 @@ class PyTracker {
     const JointVector before = qdd0 ? joint_vector(*qdd0, "qdd0", dof_) : JointVector::Zero(dof_);
     const AnyBounds further = bounds_of(model, given);
     const TrackerStart from{start, options, limits_, before, further};
+    if (scheme_.level == Level::kAcceleration) dynamics_ = model.dynamics_if_known();
     if (!stack.is_none()) {
       any_ = std::make_unique<StackLoop>(read_stack(stack, model), scheme, from);
       return;
@@ -132,15 +137,15 @@ class PyTracker {
 
   [[nodiscard]] PyTick tick(const PyReferences& references) {
     StackLoop& loop = stack();
-    const std::optional<PyNearest> nearest = nearest_at(loop.tracker().bounds().clearance(), loop.tracker().state().q);
-    return python_tick(loop, loop.tick(references), nearest);
+    TickStart start = start_of(loop.tracker(), loop.tracker().state());
+    return python_tick(loop, loop.tick(references), std::move(start));
   }
 
   [[nodiscard]] PyTick resolve_measured(const ArrayLike& q, const ArrayLike& qd, const PyReferences& references) {
     StackLoop& loop = stack();
     const State<kDynamic> measured{joint_vector(q, "q", dof_), joint_vector(qd, "qd", dof_)};
-    const std::optional<PyNearest> nearest = nearest_at(loop.tracker().bounds().clearance(), measured.q);
-    return python_tick(loop, loop.resolve_measured(measured, references), nearest);
+    TickStart start = start_of(loop.tracker(), measured);
+    return python_tick(loop, loop.resolve_measured(measured, references), std::move(start));
   }
 
   void enable(int level, bool on) { stack().enable(level, on); }
@@ -150,7 +155,8 @@ class PyTracker {
   [[nodiscard]] PyTick tick(const ArrayLike& x, const OptionalArray& xd, const OptionalArray& xdd) {
     return visit(kByName, [&](auto& tracker, auto space) {
       const auto target = reference<decltype(space)>(x, xd, xdd);
-      return tick_at(tracker, tracker.state().q, [&] { return tracker.tick(target); });
+      TickStart start = start_of(tracker, tracker.state());
+      return python_tick(tracker.tick(target), std::move(start));
     });
   }
 
@@ -163,7 +169,8 @@ class PyTracker {
     return visit(kByName, [&](auto& tracker, auto space) {
       auto* same = std::get_if<AnyFollower<decltype(space)>>(&follower.of(""));
       if (same == nullptr) validation::reject("follower", ": is for another task: call this tracker's follow()");
-      return tick_at(tracker, tracker.state().q, [&] { return tracker.tick(*same); });
+      TickStart start = start_of(tracker, tracker.state());
+      return python_tick(tracker.tick(*same), std::move(start));
     });
   }
 
@@ -174,7 +181,8 @@ class PyTracker {
         validation::reject("filter", ": is for another task: must be a TargetFilter with the tracker's task");
       }
       if (same->dt() != dt_) validation::fail("filter's dt", same->dt(), "the tracker's dt = ", dt_);
-      return tick_at(tracker, tracker.state().q, [&] { return tracker.tick(*same); });
+      TickStart start = start_of(tracker, tracker.state());
+      return python_tick(tracker.tick(*same), std::move(start));
     });
   }
 
@@ -183,7 +191,8 @@ class PyTracker {
     return visit(kByName, [&](auto& tracker, auto space) {
       const State<kDynamic> measured{joint_vector(q, "q", dof_), joint_vector(qd, "qd", dof_)};
       const auto target = reference<decltype(space)>(x, xd, xdd);
-      return tick_at(tracker, measured.q, [&] { return tracker.resolve_measured(measured, target); });
+      TickStart start = start_of(tracker, measured);
+      return python_tick(tracker.resolve_measured(measured, target), std::move(start));
     });
   }
 
@@ -262,6 +271,12 @@ class PyTracker {
     return **stacked;
   }
 
+  /// The start of a tick in a state.
+  template <typename Tracker>
+  [[nodiscard]] TickStart start_of(Tracker& tracker, const State<kDynamic>& state) const {
+    return {state, nearest_at(tracker.bounds().clearance(), state.q), dynamics_};
+  }
+
   template <typename Space>
   static Reference<Space> reference(const ArrayLike& x, const OptionalArray& xd, const OptionalArray& xdd) {
     auto result = Reference<Space>::hold(point<Space>(x, "x"));
@@ -274,6 +289,7 @@ class PyTracker {
   double dt_;
   Scheme scheme_;  ///< For plans, with the null-space damping of the tracker.
   JointLimits<kDynamic> limits_;
+  std::shared_ptr<const AnyDynamics> dynamics_;  ///< For the torques of ticks; null if they are not known.
   Any any_;
 };
 
@@ -284,6 +300,11 @@ void bind_tick(py::module_& m) {
                              "Joint command for the end of the tick [rad], or [m] for a prismatic joint, shape (n,).")
       .def_property_readonly("qd", array(&PyTick::qd), "Velocity of the command [rad/s], shape (n,).")
       .def_property_readonly("qdd", array(&PyTick::qdd), "Mean acceleration over the tick [rad/s^2], shape (n,).")
+      .def_property_readonly(
+          "torque", &PyTick::torque,
+          "Torques of inverse dynamics [Nm], or [N] for a prismatic joint, for qdd in the state at the tick's start, "
+          "without\ndry friction, shape (n,): the feed-forward torques. None at velocity level, and if the arm has no "
+          "dynamics.")
       .def_readonly("status", &PyTick::status, "Status of the tick; if the tick failed, the reason why the arm brakes.")
       .def_readonly("scale", &PyTick::scale, "Task scale that the limits admit, from 0 to 1.")
       .def_property_readonly("saturated", &PyTick::saturated_joints, "Which joints are on a bound, shape (n,).")
@@ -293,8 +314,9 @@ void bind_tick(py::module_& m) {
       .def_property_readonly(
           "errors", &PyTick::task_errors,
           "For a stack: x - f(q) of each task by name, zero in rows that the task does not select; else None.")
-      .def_readonly("nearest", &PyTick::nearest,
-                    "The nearest checked pair of shapes at the tick's start; None without a clearance.");
+      .def_property_readonly(
+          "nearest", [](const PyTick& tick) { return tick.start.nearest; },
+          "The nearest checked pair of shapes at the tick's start; None without a clearance.");
 }
 
 void bind_follower(py::module_& m) {

@@ -37,6 +37,8 @@ struct Model {
   /// Dynamics of the robot, made in the first call. Throws std::invalid_argument if a drive moves no mass, or an
   /// inertia is not physical.
   [[nodiscard]] const AnyDynamics& dynamics() const;
+  /// dynamics(), or null if dynamics() throws.
+  [[nodiscard]] std::shared_ptr<const AnyDynamics> dynamics_if_known() const noexcept;
 
   Tree<> tree;
   Robot<kDynamic> robot;
@@ -48,5 +50,9 @@ struct Model {
  private:
   mutable std::shared_ptr<const AnyDynamics> dynamics_;
 };
+
+/// Torques of the drives for a motion, by inverse dynamics.
+[[nodiscard]] JointVector torque_of(const AnyDynamics& dynamics, const JointVector& q, const JointVector& qd,
+                                    const JointVector& qdd);
 
 }  // namespace fpbm::bindings

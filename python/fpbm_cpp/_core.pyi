@@ -176,6 +176,11 @@ class Model:
         Number of joints n that have a drive.
         """
     @property
+    def has_dynamics(self) -> bool:
+        """
+        Whether every drive moves a mass and all inertias are physical, so that torques are known.
+        """
+    @property
     def joint_names(self) -> list[str]:
         """
         Names of the joints that have a drive, from the base on.
@@ -709,6 +714,12 @@ class Tick:
     def status(self) -> Status:
         """
         Status of the tick; if the tick failed, the reason why the arm brakes.
+        """
+    @property
+    def torque(self) -> numpy.typing.NDArray[numpy.float64] | None:
+        """
+        Torques of inverse dynamics [Nm], or [N] for a prismatic joint, for qdd in the state at the tick's start, without
+        dry friction, shape (n,): the feed-forward torques. None at velocity level, and if the arm has no dynamics.
         """
 
 class PathFollower:

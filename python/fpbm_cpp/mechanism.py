@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ._types import ArrayField
+from ._types import ArrayField, OptionalArrayField
 from .errors import wrong
 from .inertia import Inertia
 from .joints import CENTER, INERTIA, JointLimits
-from .parameter import NOT_NEGATIVE, Data, data, parameter, renamed
+from .parameter import NOT_NEGATIVE, Data, Parameter, data, parameter, renamed
 
 if TYPE_CHECKING:
     from ._core import Model as CoreModel
@@ -21,6 +21,21 @@ else:  # The compiled part is a base of the subclasses, once.
     CoreModel = object
 
 M = TypeVar("M", bound="Mechanism")
+
+
+@data
+class Payload(Data):
+    """A payload, as the arguments of with_payload(), or as a table of a job."""
+
+    mass: float = parameter("Mass.", NOT_NEGATIVE, unit="kg")
+    com: ArrayField = parameter("Centre of mass in the frame.", CENTER, default=(0, 0, 0))
+    inertia: OptionalArrayField = parameter(
+        "Rotational inertia about com, along the axes of the frame; default: a point mass.", INERTIA, default=None
+    )
+    frame: str = parameter("Frame that carries the payload.", default="tip")
+
+
+PAYLOAD = Parameter("payload", default=None, usual=None, help="Payload: a table with mass, com, inertia and frame.")
 
 
 @data
@@ -65,11 +80,8 @@ class Mechanism(Data, CoreModel):
 
         Raises ParameterError if a number is out of range, or the frame does not exist or does not move.
         """
-        body = Inertia(
-            renamed("mass", mass, NOT_NEGATIVE),
-            renamed("com", com, CENTER),
-            np.zeros((3, 3)) if inertia is None else renamed("inertia", inertia, INERTIA),
-        )
+        load = Payload(mass, com, inertia, frame)
+        body = Inertia(load.mass, load.com, np.zeros((3, 3)) if load.inertia is None else load.inertia)
         link, place = self.locate(frame)
         if link == 0:
             raise wrong("frame", frame, f" = {frame!r}: is fixed to the base: must be a frame that a joint moves")

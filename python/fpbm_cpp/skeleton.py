@@ -26,6 +26,21 @@ def joint_units(arm: Arm | Robot) -> list[str]:
     return ["m" if joint.type == "prismatic" else "rad" for joint in joints_of(arm) if joint.mimic is None]
 
 
+def torque_units(arm: Arm | Robot) -> list[str]:
+    """Unit of the torque, or the force, of each drive."""
+    return ["N" if unit == "m" else "Nm" for unit in joint_units(arm)]
+
+
+def dry_friction(arm: Arm | Robot) -> Array:
+    """Dry friction of each drive [Nm or N], with the joints that follow the drive, shape (n,)."""
+    joints = joints_of(arm)
+    dry = np.zeros(len(joints))
+    for i, joint in enumerate(joints):
+        leader, ratio, _ = joint.mimic or (i, 1.0, 0.0)
+        dry[leader] += abs(ratio) * joint.friction
+    return dry[[joint.mimic is None for joint in joints]]
+
+
 def joint_points(arm: Arm | Robot, q: Array) -> Array:
     """Positions of base, joints and tip [m] in postures q, shape (..., n): a line along the links.
 

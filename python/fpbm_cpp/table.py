@@ -3,7 +3,8 @@
     {"kind": "fpbm", "alpha": 0.6, "weights": [1, 2, 3, 4], "k1": 10.0, "k2": 25.0}
 
 A table has the kind of its object and the parameters by name. The table of a path may also have in_plane,
-with_rotation and rotation_time_law, and at_speed, at_acceleration and at_jerk for a constant speed. Several paths, one
+with_rotation and rotation_time_law, and at_speed, at_acceleration and at_jerk for a constant speed. The
+table of an arm may have a payload. Several paths, one
 after another, are a list of tables; paths of several tasks are a table with a path, or a list of paths, for each task
 name. A stack is a list of tables of tasks, each with its level, counted from 0.
 """
@@ -19,6 +20,7 @@ from .capsule import Capsule
 from .clearance import CLEARANCES, Clearance
 from .errors import ParameterError, not_one_of, suggestion, wrong
 from .joints import Joint, JointLimits, NamedFrame, TreeJoint
+from .mechanism import PAYLOAD, Payload
 from .obstacle import OBSTACLES
 from .parameter import REQUIRED, Data, Parameter, parameters
 from .paths import PATH_OPTIONS, PATHS, AtSpeed, InPlane, WithRotation
@@ -51,6 +53,7 @@ WITHIN: dict[Any, Any] = {
     (TaskBounds, "task"): {each.kind: each for each in (PositionTask, AxisTask)},
     (TreeJoint, "joint"): Joint,
     (AtSpeed, "path"): EVERY_PATH,
+    **{(maker, PAYLOAD.name): Payload for maker in ROBOTS.values()},
 }
 LEVEL = Parameter(
     "level",
@@ -100,7 +103,7 @@ def to_table(thing: Any) -> Any:
     raise TypeError(f"{thing!r:.80}: must be an object of this package, numbers or text")
 
 
-def from_table(table: Any, kinds: Makers = KINDS, name: str = "") -> Any:
+def from_table(table: Any, kinds: Makers | type[Data] = KINDS, name: str = "") -> Any:
     """Object of a table, or of a list of tables of paths or of tasks; a table may also contain objects.
 
     kinds: the allowed kinds, for example ROBOTS, PATHS, SCHEMES or TASKS. name: name of the table in errors.
@@ -126,6 +129,8 @@ def keys(maker: Callable[..., Any]) -> dict[str, Parameter]:
     known = dict(parameters(maker))
     if maker in TASKS.values():
         return {**known, "level": LEVEL}
+    if maker in ROBOTS.values():
+        return {**known, PAYLOAD.name: PAYLOAD}
     return {**known, **PATH_OPTIONS} if maker in EVERY_PATH.values() else known
 
 
@@ -135,6 +140,14 @@ def is_by_task(table: Any) -> bool:
         return False
     pieces = [piece for path in table.values() for piece in (path if isinstance(path, (list, tuple)) else [path])]
     return all(isinstance(piece, Mapping) for piece in pieces)
+
+
+def carrying(arm: Any, payload: Payload) -> Any:
+    """The arm with a payload. Raises ParameterError."""
+    try:
+        return arm.with_payload(payload.mass, com=payload.com, inertia=payload.inertia, frame=payload.frame)
+    except ParameterError as error:
+        raise error.within(PAYLOAD.name) from None
 
 
 class _Reader:
@@ -189,8 +202,11 @@ class _Reader:
 
     def _made(self, maker: Callable[..., Any], values: dict[str, Any]) -> Any:
         values.pop("level", None)  # Read by _stack().
+        payload = values.pop(PAYLOAD.name, None)
         plane, rotation, law, speed, acceleration, jerk = (values.pop(key, None) for key in PATH_OPTIONS)
         thing = maker(**values)
+        if payload is not None:
+            return carrying(thing, payload)
         if plane is not None:
             thing = thing.in_plane(plane)
         if rotation is not None:

@@ -59,7 +59,7 @@ def test_a_run_of_a_stack_has_its_tasks() -> None:
 
 @pytest.mark.parametrize("name", PANELS)
 def test_each_panel_alone_is_as_wide_as_a_column(name: str) -> None:
-    special = {"axis_orientation_errors": a_run_in_space, "task_errors": a_run_of_a_stack}
+    special = {"axis_orientation_errors": a_run_in_space, "task_errors": a_run_of_a_stack, "torques": a_run_in_space}
     run = special.get(name, a_run_within_limits)()
     figure = run.plot(panels=[name])
     assert list(panels(figure)) == [PANELS[name].heading]
@@ -171,7 +171,7 @@ def test_title_has_rounded_numbers() -> None:
 
 
 def test_names_of_the_overview() -> None:
-    assert set(PANELS) - set(OVERVIEW) == {"axis_errors", "axis_orientation_errors"}
+    assert set(PANELS) - set(OVERVIEW) == {"axis_errors", "axis_orientation_errors", "torques"}
 
 
 def test_threads_and_no_global_state() -> None:

@@ -52,7 +52,7 @@ def test_a_bag_holds_the_run(name, tmp_path):
         assert joints.name == run.arm.joint_names
         assert joints.position.tobytes() == run.q[k].tobytes()
         assert joints.velocity.tobytes() == run.qd[k].tobytes()
-        assert not len(joints.effort)
+        assert joints.effort.tobytes() == (b"" if run.torque is None else run.torque[k].tobytes())
     for topic, positions in (("/tip", run.positions), ("/tip_reference", run.reference_positions)):
         found = np.array([numbers(message.pose.position) for _, message in messages[topic]])
         d = positions.shape[1]

@@ -75,6 +75,8 @@ def expect_columns(columns, run):
     expected = {"t": run.t}
     for name in ("q", "qd", "qdd"):
         expected.update({f"{name}_{joint}": getattr(run, name)[:, i] for i, joint in enumerate(joints)})
+    if run.torque is not None:
+        expected.update({f"torque_{joint}": run.torque[:, i] for i, joint in enumerate(joints)})
     for ending, x, positions in (("", run.x, run.positions), ("_ref", run.x_ref, run.reference_positions)):
         expected.update({axis + ending: positions[:, i] for i, axis in enumerate("xy" if flat else "xyz")})
         if run.task == "pose" and flat:

@@ -285,7 +285,7 @@ def test_the_status_of_each_task_and_level_is_reported(stacked):
     frame = stacked._loop.frame("place")[:3, 3]
     assert f"{np.linalg.norm(stacked.target['place'] - frame):.3f} m" in readout(stacked)
     labels = [series["label"] for series in stacked._chart._plot.series]
-    assert labels == ["t [s]", "speed", "acceleration", "jerk", *(f"scale of {level}" for level in levels)]
+    assert labels == ["t [s]", "speed", "acceleration", "jerk", "torque", *(f"scale of {level}" for level in levels)]
     assert len(stacked._chart._plot.data) == len(labels)
 
 
@@ -329,7 +329,7 @@ def test_the_server_runs_until_it_is_closed():
         ({"task": "dance"}, "task = 'dance'"),
         ({"q0": [0, 0]}, "q0 has 2 entries"),
         ({"q0": [9, 0, 0, 0]}, r"q0\[0\] = 9: must be within"),
-        ({"bounds": [3]}, "bounds: must be a Clearance and TaskBounds in a sequence"),
+        ({"bounds": [3]}, "bounds: must be a Clearance, TaskBounds and TorqueBounds in a sequence"),
         ({"port": -1}, "port = -1"),
         ({"urdf": "none.urdf"}, "must not be given for a planar arm"),
         ({"targets": fp.TargetFilter([0, 0, 0], velocity=1, acceleration=1, jerk=1)}, "another task"),

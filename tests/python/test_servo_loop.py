@@ -101,7 +101,7 @@ def test_limits_are_kept_for_any_handle_jump(which, task, data):
     kept(loop, q0, ticks)
     shares = loop.strip.shares
     assert (shares[:3] <= 1 + 1e-6).all()
-    assert ((shares[3] >= 0) & (shares[3] <= 1)).all()
+    assert ((shares[-1] >= 0) & (shares[-1] <= 1)).all()
 
 
 @pytest.mark.parametrize(("which", "task"), KINDS)
@@ -191,7 +191,7 @@ def test_a_restart_returns_to_the_start():
     loop.restart()
     assert not loop.stopped
     assert (loop.tick, loop.time, loop.status) == (None, 0.0, fp.Status.OK)
-    assert loop.strip.shares.shape == (4, 0)
+    assert loop.strip.shares.shape == (5, 0)
     ticks = play(loop, clock, 1)
     np.testing.assert_allclose(loop.q, READY, atol=1e-9)
     kept(loop, READY, ticks)
@@ -250,7 +250,7 @@ def test_unbounded_quantities_have_no_share():
     play(loop, clock, 1)
     assert loop.strip.bounded == (False, False, False)
     assert (loop.strip.shares[:3] == 0).all()
-    assert ServoLoop(PANDA, fpbm(7), READY).strip.bounded == (True, True, True)
+    assert ServoLoop(PANDA, fpbm(7), READY).strip.bounded == (True, True, True, True)
 
 
 def test_a_target_filter_bounds_the_speed_of_the_tip():

@@ -90,7 +90,7 @@ def test_limits_are_kept_for_any_handle_jump(data):
             getattr(loop, action)()
         ticks += play(loop, clock, 0.6, data.draw(st.sampled_from([0.0005, 0.01, FRAME, 0.1])))
     kept(loop, READY, ticks)
-    assert ((loop.strip.shares[3:] >= 0) & (loop.strip.shares[3:] <= 1)).all()
+    assert ((loop.strip.shares[4:] >= 0) & (loop.strip.shares[4:] <= 1)).all()
 
 
 def test_one_level_moves_as_the_loop_of_that_task():
@@ -111,12 +111,12 @@ def test_the_strip_has_the_scale_of_each_level():
     loop.push(moved(loop.target["place"], [0.0, 0.6, 0.0]), "place")
     ticks = play(loop, clock, 2)
     scales = np.array([tick.scales for tick in ticks])
-    np.testing.assert_array_equal(loop.strip.shares[3:], scales.T)
+    np.testing.assert_array_equal(loop.strip.shares[4:], scales.T)
     assert scales.min() < 0.9
     _, worst = loop.strip.curves()
     there = worst[:, ~np.isnan(worst[0])]
-    assert there.shape[0] == 3 + 4
-    np.testing.assert_array_equal(there[3:].min(axis=1), scales.min(axis=0))
+    assert there.shape[0] == 4 + 4
+    np.testing.assert_array_equal(there[4:].min(axis=1), scales.min(axis=0))
 
 
 def test_each_task_starts_at_its_own_target():
@@ -137,7 +137,7 @@ def test_each_task_starts_at_its_own_target():
         play(loop, clock, 0.5)
         loop.restart()
     assert not loop.stopped
-    assert loop.strip.shares.shape == (5, 0)
+    assert loop.strip.shares.shape == (6, 0)
 
 
 def test_another_scheme_keeps_the_targets():

@@ -16,6 +16,7 @@ from ..job import JobError, Motion, prepare, read_job
 from ..job.sections import FREE, SECTIONS, Table, known
 from ..parameter import REQUIRED, Parameter
 from ..table import is_by_task
+from ..torque_bounds import TorqueBounds
 from .plain import PLACE, WIDTH, Plain, file_errors
 
 HEADING = {
@@ -24,6 +25,7 @@ HEADING = {
     "path": "Path",
     "scheme": "Scheme",
     "limits": "Joint limits",
+    "bounds": "Joint limits",
     "clearance": "Clearance",
 }
 SAVED = "Write the job, including all defaults, to a TOML file."
@@ -71,6 +73,14 @@ class JobOption(click.Option):
 
 
 BASE = "Base link of a URDF file. For a robot: fixed, or planar, which moves along x and y and rotates about z."
+PAYLOAD = (
+    "Mass of a payload at the tip, and centre of mass in the frame of the tip. For a robot, a job has payload.frame.  "
+    "[kg, m; default: at the tip]"
+)
+TORQUES = (
+    "Bound the torques to this fraction of the arm's efforts, for schemes at acceleration level; keeps joint limits. "
+    "Accelerations are lower than their bounds where the torques need it."
+)
 LOCKED = "Fix a joint of the robot in a URDF file at a position; can be repeated.  [rad, m]"
 TASK = (
     "Task of the tip: position or pose. For a job with tasks: name of the task that follows the path. For a robot: a "
@@ -95,6 +105,7 @@ def _job_options(kind: bool, path: bool, clear: bool, keep: bool) -> Iterator[Jo
     yield _option("arm", "tip", replace(urdf["tip"], help="Tip link of a URDF file."))
     yield _option("arm", "base", replace(urdf["base"], help=BASE))
     yield JobOption("arm", "locked", "--locked", multiple=True, metavar="JOINT=NUMBER", help=LOCKED)
+    yield JobOption("arm", "payload", "--payload", type=_value, metavar="MASS[,X,Y,Z]", help=PAYLOAD)
     for key, declared in known("run").items():
         if key == "task":
             words = Word(WORDS["task"])
@@ -119,6 +130,7 @@ def _job_options(kind: bool, path: bool, clear: bool, keep: bool) -> Iterator[Jo
         yield JobOption("limits", "keep", "--limits/--no-limits", help=text)
     yield from limit_options()
     if clear:
+        yield JobOption("bounds", "fraction", "--torque-bounds", type=_value, metavar="FRACTION", help=TORQUES)
         shapes = known("clearance", "urdf")
         yield JobOption("clearance", "file", "--clearance", metavar="FILE", help=CLEAR)
         for key, text in (("srdf", SRDF), ("margin", MARGIN), ("per_link", PER_LINK)):
@@ -196,7 +208,7 @@ class Request:
             self._put(option, given[option])
         names = {f"{option.section}.{option.key}": option for option in values}
         self.chosen = "scheme.kind" in said or names.get("scheme.kind") in given  # Whether the scheme is not a default.
-        self.flags = {key: each.opts[0] for key, each in names.items() if each in given or key not in said}
+        self.flags |= {key: each.opts[0] for key, each in names.items() if each in given or key not in said}
         if isinstance(self.table.get("task"), list) and names["run.task"] in given:
             self.flags["run.frame"] = "--task"  # The option --task constructs the tasks.
 
@@ -269,6 +281,8 @@ class Request:
             return
         if key == "task":
             return self._put_tasks(value)
+        if section == "bounds":
+            return self._put_torque_bounds(value)
         if key == "locked":
             value = dict(map(_locked, value))
         there = self.table.get(section)
@@ -279,7 +293,23 @@ class Request:
             there = {"kind": FREE[section]} if section in FREE else {}
         if key == "kind" and value in SECTIONS[section]:
             there = _of_kind(section, there, value)
+        if key == "payload":
+            mass, *com = value if isinstance(value, list) else [value]
+            before = there.get(key)
+            value = {**(before if isinstance(before, dict) else {}), "mass": mass, **({"com": com} if com else {})}
+            self.flags |= {f"arm.payload.{part}": f"--payload: {part}" for part in ("mass", "com", "frame")}
         self.table[section] = {**there, key: value}
+
+    def _put_torque_bounds(self, fraction: Any) -> None:
+        """Set the fraction of the bounds on torques, or add these bounds."""
+        given = self.table.get("bounds", [])
+        tables = list(given) if isinstance(given, list) else [given]
+        kinds = [each.get("kind") if isinstance(each, dict) else None for each in tables]
+        at = kinds.index(TorqueBounds.kind) if TorqueBounds.kind in kinds else len(tables)
+        before = tables[at] if at < len(tables) else {"kind": TorqueBounds.kind}
+        tables[at : at + 1] = [{**before, "fraction": fraction}]
+        self.table["bounds"] = tables
+        self.flags[f"bounds[{at}].fraction"] = "--torque-bounds"
 
     def _put_tasks(self, tasks: Sequence[str]) -> None:
         """Set the task of the tip, or of the path; for a robot without tasks, add a pose task for each frame."""

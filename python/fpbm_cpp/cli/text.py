@@ -39,6 +39,10 @@ def _figures(run: Run) -> Iterator[tuple[str, str, str, str]]:
         yield f"peak joint {name}", number(size[k, i]), units[i] + per, f"{names[i]} at {run.t[k]:.3g} s"
         i = size[-1].argmax()
         yield f"final joint {name}", number(size[-1, i]), units[i] + per, names[i]
+    ratios = run.bound_ratios().get("torque", np.zeros((1, 1)))
+    if ratios.any():
+        k, i = np.unravel_index(ratios.argmax(), ratios.shape)
+        yield "largest torque / bound", number(ratios[k, i]), "", f"{names[i]} at {run.t[k]:.3g} s"
     manipulability = run.manipulability()
     yield at(manipulability.argmin(), "least manipulability", manipulability)
     if run.scale is not None:

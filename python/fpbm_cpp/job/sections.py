@@ -13,11 +13,12 @@ from ..arms import Arm, SerialArm
 from ..clearance import CLEARANCES, Clearance
 from ..errors import ParameterError, suggestion, wrong
 from ..joints import JointLimits
+from ..mechanism import PAYLOAD, Payload
 from ..parameter import NOT_NEGATIVE, POSITIVE, Data, Parameter, data, parameter
 from ..paths import PATHS
 from ..robots import ROBOTS, Robot
 from ..schemes import SCHEMES
-from ..table import BOUNDS, Makers, from_table, is_by_task, keys, problems
+from ..table import BOUNDS, Makers, carrying, from_table, is_by_task, keys, problems
 from ..tasks import TASKS
 
 Table = dict[str, Any]
@@ -107,6 +108,7 @@ def job_errors() -> Iterator[None]:
         section, inside, _ = error.name.partition(".")
         # The key task without a section is run.task.
         named = section.partition("[")[0] in SECTIONS and bool(inside or section != "task")
+        named |= error.name.startswith("joint '")  # A joint is not a key.
         raise JobError(error if named else error.within(OWNERS.get(error.name, "run"))) from None
 
 
@@ -138,11 +140,15 @@ def arm_of(job: Table) -> Arm | Robot:
     if not limits or kind not in ("urdf", "robot") or "file" in job.get("clearance", {}):
         arm: Arm | Robot = make("arm", job["arm"])
         return arm
+    payload = said.pop(PAYLOAD.name, None)
     with job_errors():
         own = JointLimits(**limits)
         read = partial(SerialArm.from_urdf, tip=said.pop("tip", "")) if kind == "urdf" else Robot.from_urdf
         try:
-            return read(said.pop("file"), **said, limits=own)
+            arm = read(said.pop("file"), **said, limits=own)
+            if payload is not None:
+                arm = carrying(arm, from_table(payload, Payload, PAYLOAD.name))
+            return arm
         except ParameterError as error:
             raise error.within("arm") from None
         except ValueError as error:

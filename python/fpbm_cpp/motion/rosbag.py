@@ -24,8 +24,8 @@ def to_rosbag(
 
     Needs the extra 'ros', but no ROS installation. The topics are /joint_states, /tip and /tip_reference
     (JointState, PoseStamped), in the base frame, named `frame`; with trajectory, also /joint_trajectory with one
-    message. If the task leaves the orientation free, /tip has the arm's orientation, and /tip_reference has the
-    identity. Raises FileExistsError if the directory exists.
+    message. The efforts are run.torque if torques are known. If the task leaves the orientation free, /tip has the
+    arm's orientation, and /tip_reference has the identity. Raises FileExistsError if the directory exists.
     """
     rosbag2, typesys = (extra(f"rosbags.{part}", "to_rosbag", "ros") for part in ("rosbag2", "typesys"))
     if not len(run.t):
@@ -64,15 +64,17 @@ def _messages(run: RunData, types: Any, frame: str, trajectory: bool) -> Iterato
         turn = types["geometry_msgs/msg/Quaternion"](*quaternion.tolist())
         return types["geometry_msgs/msg/PoseStamped"](header(t), types["geometry_msgs/msg/Pose"](place, turn))
 
-    joints, times, nothing = run.arm.joint_names, np.rint(run.t * 1e9).astype(np.int64).tolist(), np.zeros(0)
+    joints, times = run.arm.joint_names, np.rint(run.t * 1e9).astype(np.int64).tolist()
+    torque = run.torque
+    efforts = np.zeros((len(times), 0)) if torque is None else torque
     if trajectory:
         point = types["trajectory_msgs/msg/JointTrajectoryPoint"]
-        rows = zip(run.q, run.qd, run.qdd, times)
-        points = [point(q, qd, qdd, nothing, clock("Duration", t)) for q, qd, qdd, t in rows]
+        rows = zip(run.q, run.qd, run.qdd, efforts, times)
+        points = [point(q, qd, qdd, effort, clock("Duration", t)) for q, qd, qdd, effort, t in rows]
         yield "/joint_trajectory", 0, types["trajectory_msgs/msg/JointTrajectory"](header(0), joints, points)
     tips = zip(*_poses(run, run.x), *_poses(run, run.x_ref, reference=True))
-    for t, q, qd, (p, r, p_ref, r_ref) in zip(times, run.q, run.qd, tips):
-        yield "/joint_states", t, types["sensor_msgs/msg/JointState"](header(t), joints, q, qd, nothing)
+    for t, q, qd, effort, (p, r, p_ref, r_ref) in zip(times, run.q, run.qd, efforts, tips):
+        yield "/joint_states", t, types["sensor_msgs/msg/JointState"](header(t), joints, q, qd, effort)
         yield "/tip", t, pose(t, p, r)
         yield "/tip_reference", t, pose(t, p_ref, r_ref)
 

@@ -40,7 +40,8 @@ class Run(RunData):
         ... task is 'position' or 'pose'; for a stack, the name of the task of x, x_ref and error.
     scale, saturated : numpy.ndarray, shapes (N,) and (N, n), or None
         Of track(): the task scale, from 0 (the arm brakes) to 1 (the whole task), and which joints are on a bound.
-        fastest() has only `saturated`: joints within 1 % of a bound on velocity, acceleration or jerk.
+        fastest() has only `saturated`: joints within 1 % of, or beyond, a bound on velocity, acceleration, jerk or
+        torque.
     clearance : numpy.ndarray, shape (N,), or None
         Of track() with a clearance: distance between the two nearest shapes [m].
     scales : numpy.ndarray, shape (N, levels), or None

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from .._core import Status, advice, failed, message
 from .._types import Array
 from ..arms import Arm
+from ..bounds import largest_torques
 from ..joints import JointLimits
 from ..paths import Path
 from ..robots import Robot
@@ -201,18 +202,36 @@ class RunData:
         """The joint limits given to track(); otherwise the limits of the arm."""
         return self.options.get("limits") or self.arm.limits
 
+    @property
+    def torque(self) -> Array | None:
+        """Torques of inverse dynamics for q, qd and qdd, without dry friction, shape (N, n) [Nm], [N] for a prismatic
+        joint. None if the torques of the arm are not known: arm.bias() then raises an error with the cause.
+        """
+        return self.arm.inverse_dynamics(self.q, self.qd, self.qdd) if self.arm.has_dynamics else None
+
+    @property
+    def largest_torques(self) -> Array:
+        """Bounds on run.torque [Nm], shape (n,): of TorqueBounds, or the efforts in run.limits, minus the dry friction;
+        infinite without a bound.
+        """
+        return largest_torques(self.arm, self.limits, self.options.get("bounds") or ())
+
     def bound_ratios(self) -> dict[str, Array]:
         """Ratios of the velocity, acceleration and jerk of each joint to their bounds in run.limits, shape (N, n) each.
 
-        The jerk of a sample is the difference to the acceleration of the next sample; 0 at the last sample, and without
-        a bound on jerk.
+        If the torques of the arm are known, also the ratios of run.torque to run.largest_torques, as "torque".
+
+        The jerk of a sample is the difference to the acceleration of the next sample; 0 at the last sample. Without a
+        bound, a ratio is 0.
         """
         limits = self.limits
         steps = np.diff(self.t)[:, None]
         jerk = np.zeros_like(self.qdd)
         jerk[:-1] = np.diff(self.qdd, axis=0) / steps
         motions = {"velocity": self.qd, "acceleration": self.qdd, "jerk": jerk}
-        return {name: np.abs(motion) / getattr(limits, name) for name, motion in motions.items()}
+        ratios = {name: np.abs(motion) / getattr(limits, name) for name, motion in motions.items()}
+        torque = self.torque
+        return ratios if torque is None else {**ratios, "torque": np.abs(torque) / self.largest_torques}
 
     def manipulability(self) -> Array:
         """sqrt(det(J J')) of the tip, shape (N,): 0 in a singular posture (Yoshikawa, 1985).

@@ -14,7 +14,7 @@ from .._core import rotation_vector
 from .._types import Array
 from ..errors import extra
 from ..files import write_whole
-from ..skeleton import joint_units
+from ..skeleton import joint_units, torque_units
 from .run_data import RunData
 from .task_errors import error_parts
 
@@ -33,6 +33,9 @@ def _quantities(run: RunData) -> Iterator[Quantity]:
     joints, none = joint_units(run.arm), [""] * 4
     for name, values, per in (("q", run.q, ""), ("qd", run.qd, "/s"), ("qdd", run.qdd, "/s^2")):
         yield name, f"{name}_{{}}", "joint", values, [unit + per for unit in joints]
+    torque = run.torque
+    if torque is not None:
+        yield "torque", "torque_{}", "joint", torque, torque_units(run.arm)
     for end, x, positions in (("", run.x, run.positions), ("_ref", run.x_ref, run.reference_positions)):
         yield f"x{end}", f"{{}}{end}", "axis", positions, ["m"] * 3
         if x.ndim == 3:
@@ -71,8 +74,9 @@ def _columns(run: RunData) -> Iterator[tuple[str, str, NDArray[Any]]]:
 def to_pandas(run: RunData) -> "pd.DataFrame":
     """Data frame with a row for each sample, and units in frame.attrs["units"]. Needs the extra 'data'.
 
-    Columns t, q_<joint>, qd_<joint>, qdd_<joint>, x, y, z with qx, qy, qz, qw or angle, x_ref and so on, error_x
-    and so on, orientation_error_x and so on; scale and saturated_<joint> within limits, and clearance.
+    Columns t, q_<joint>, qd_<joint>, qdd_<joint>, torque_<joint> if torques are known, x, y, z with qx, qy, qz, qw or
+    angle, x_ref and so on, error_x and so on, orientation_error_x and so on; scale and saturated_<joint> within limits,
+    and clearance.
     """
     pandas = extra("pandas", "to_pandas", "data")
     names, units, columns = zip(*_columns(run))
@@ -99,8 +103,8 @@ def to_csv(run: RunData, file: str | os.PathLike[str]) -> None:
 def to_xarray(run: RunData) -> "xr.Dataset":
     """Dataset over time, joint and axis, with units as attributes. Needs the extra 'data'.
 
-    Variables q, qd, qdd, x, x_ref, error; for a pose, orientation (a quaternion) or angle, orientation_ref
-    or angle_ref, and orientation_error; scale and saturated within limits, and clearance.
+    Variables q, qd, qdd, torque if torques are known, x, x_ref, error; for a pose, orientation (a quaternion) or angle,
+    orientation_ref or angle_ref, and orientation_error; scale and saturated within limits, and clearance.
     """
     xarray = extra("xarray", "to_xarray", "data")
     coordinates = {

@@ -32,10 +32,11 @@ def plot_run(
 
     The text is 9 points high. The figure is two columns of a paper wide, or one column for few panels without an arm.
     The default title has the scheme and the path. panels are names from PANELS; default: all except the components of
-    the error. Panels without data are left out: for example 'saturation' without joint limits, 'clearance' without a
-    clearance, 'axis_orientation_errors' if the task is a position. dark: dark background. bounds: whether the panels of
-    the joints show all finite bounds; otherwise, only bounds close to a joint. A notebook shows the figure. Raises
-    ValueError if a panel is unknown or given twice, or no panel has data.
+    the error, and the torques only if the motion has TorqueBounds. Panels without data are left out: for example
+    'saturation' without joint limits, 'clearance' without a clearance, 'axis_orientation_errors' if the task is a
+    position. dark: dark background. bounds: whether the panels of the joints show all finite bounds; otherwise, only
+    bounds close to a joint. A notebook shows the figure. Raises ValueError if a panel is unknown or given twice, or no
+    panel has data.
     """
     chosen = choose(run, panels)
     if title is None:
@@ -78,7 +79,7 @@ def lay_out(
         for name, cell in zip(column, side.add_gridspec(len(column), 1, height_ratios=heights)):
             space = name == "arm" and run.positions.shape[1] == 3
             drawn[name] = side.add_subplot(cell, projection="3d" if space else None)
-    for letter, (name, axes) in zip("abcdefghijkl", drawn.items()):
+    for letter, (name, axes) in zip("abcdefghijklmn", drawn.items()):
         dress(axes, theme, f"({letter}) {panels[name].heading}" if lettered else panels[name].heading)
         panels[name].draw(axes, run, theme, *([bounds] if panels[name].of_joints else []))
     for column in columns:

@@ -11,11 +11,11 @@ from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from .._types import Array
 from ..arms import Arm
-from ..bounds import clearance_among
+from ..bounds import clearance_among, torque_bounds_among
 from ..motion.run import Run
 from ..motion.task_errors import error_parts, tracks
 from ..robots import Robot
-from ..skeleton import joint_labels, joint_points, joint_units, task_frames
+from ..skeleton import joint_labels, joint_points, joint_units, task_frames, torque_units
 from .lines import draw_lines, envelope, from_zero, head_legend, in_decades, over_time, side_legend, top_legend
 from .theme import LIGHT, LINE, TEXT, Theme, dress
 
@@ -27,6 +27,7 @@ __all__ += [
     "saturation_panel",
     "scale_panel",
     "task_error_panel",
+    "torque_panel",
     "velocity_panel",
 ]
 __all__ += ["error_panel", "manipulability_panel", "null_space_panel", "orientation_error_panel", "tip_error_panel"]
@@ -149,17 +150,26 @@ def _components(axes: Any, run: Run, theme: Theme, error: Array, names: Sequence
 
 def position_panel(axes: Any, run: Run, theme: Theme = LIGHT, bounds: bool = False) -> None:
     """Joint positions, and bounds that are close to a joint, or all finite bounds."""
-    _joints(axes, run, theme, run.q, r"$q$", "", run.limits.lower, run.limits.upper, bounds)
+    _joints(axes, run, theme, run.q, rf"$q$ [{unit_of([run], '')}]", run.limits.lower, run.limits.upper, bounds)
 
 
 def velocity_panel(axes: Any, run: Run, theme: Theme = LIGHT, bounds: bool = False) -> None:
     """Joint velocities, and bounds that are close to a joint, or all finite bounds."""
-    _joints(axes, run, theme, run.qd, r"$\dot q$", "/s", -run.limits.velocity, run.limits.velocity, bounds)
+    most = run.limits.velocity
+    _joints(axes, run, theme, run.qd, rf"$\dot q$ [{unit_of([run], '/s')}]", -most, most, bounds)
 
 
 def acceleration_panel(axes: Any, run: Run, theme: Theme = LIGHT, bounds: bool = False) -> None:
     """Joint accelerations, and bounds that are close to a joint, or all finite bounds."""
-    _joints(axes, run, theme, run.qdd, r"$\ddot q$", "/s²", -run.limits.acceleration, run.limits.acceleration, bounds)
+    most = run.limits.acceleration
+    _joints(axes, run, theme, run.qdd, rf"$\ddot q$ [{unit_of([run], '/s²')}]", -most, most, bounds)
+
+
+def torque_panel(axes: Any, run: Run, theme: Theme = LIGHT, bounds: bool = False) -> None:
+    """Torques of inverse dynamics, and bounds that are close to a torque, or all finite bounds."""
+    assert run.torque is not None
+    units, most = sorted(set(torque_units(run.arm)), reverse=True), run.largest_torques
+    _joints(axes, run, theme, run.torque, rf"$\tau$ [{', '.join(units)}]", -most, most, bounds)
 
 
 def joint_names(arm: Arm | Robot) -> list[str]:
@@ -175,23 +185,23 @@ def unit_of(runs: Sequence[Run], per: str) -> str:
 
 
 def _joints(
-    axes: Any, run: Run, theme: Theme, values: Array, symbol: str, per: str, lower: Array, upper: Array, every: bool
+    axes: Any, run: Run, theme: Theme, values: Array, label: str, lower: Array, upper: Array, every: bool
 ) -> None:
     """A line for each joint and for each close bound: in the colour of its joint, or in ink for several joints.
 
     every: whether all finite bounds are drawn.
     """
-    draw_lines(axes, theme, run.t, values, joint_names(run.arm), f"{symbol} [{unit_of([run], per)}]")
+    draw_lines(axes, theme, run.t, values, joint_names(run.arm), label)
     span = np.where(np.isfinite(upper - lower), upper - lower, 1.0)
     colours = [colour for (colour, _), _ in zip(theme.styles(), lower)]
-    label = "bound"
+    name = "bound"
     for bounds, gaps in ((lower, values - lower), (upper, upper - values)):
         near = np.isfinite(bounds) if every else gaps.min(axis=0, initial=np.inf) < NEAR * span
         for bound in np.unique(bounds[near]):
             owners = np.flatnonzero(near & (bounds == bound))
             colour = colours[owners[0]] if len(owners) == 1 else theme.ink
-            axes.axhline(bound, color=colour, lw=0.8, ls=(0, (1, 1)), label=label, zorder=1.5)
-            label = "_bound"
+            axes.axhline(bound, color=colour, lw=0.8, ls=(0, (1, 1)), label=name, zorder=1.5)
+            name = "_bound"
     side_legend(axes, theme)
 
 
@@ -304,18 +314,24 @@ PANELS = {
     "positions": Panel("Joint positions", position_panel, of_joints=True),
     "velocities": Panel("Joint velocities", velocity_panel, of_joints=True),
     "accelerations": Panel("Joint accelerations", acceleration_panel, of_joints=True),
+    "torques": Panel("Joint torques", torque_panel, of_joints=True, fits=lambda run: run.torque is not None),
     "saturation": Panel("Joints on a bound", saturation_panel, fits=lambda run: run.saturated is not None),
     "scale": Panel("Task scale", scale_panel, fits=lambda run: run.scale is not None or run.scales is not None),
     "clearance": Panel("Clearance", clearance_panel, fits=lambda run: run.clearance is not None),
     "manipulability": Panel("Manipulability", manipulability_panel),
     "null_space": Panel("Null-space velocity", null_space_panel),
 }
-OVERVIEW = tuple(name for name in PANELS if not name.startswith("axis"))
+OVERVIEW = tuple(name for name in PANELS if not name.startswith("axis") and name != "torques")
 
 
 def choose(run: Run, panels: str | Sequence[str] | None) -> dict[str, Panel]:
-    """The requested panels, by default OVERVIEW, without panels that have no data. Raises ValueError."""
-    asked = OVERVIEW if panels is None else (panels,) if isinstance(panels, str) else tuple(panels)
+    """The requested panels, without panels that have no data. Raises ValueError.
+
+    By default OVERVIEW, and the torques if the motion has bounds on torques.
+    """
+    bounded = torque_bounds_among(run.options.get("bounds") or ()) is not None
+    usual = tuple(name for name in PANELS if name in OVERVIEW or (bounded and name == "torques"))
+    asked = usual if panels is None else (panels,) if isinstance(panels, str) else tuple(panels)
     for name in asked:
         if name not in PANELS:
             raise ValueError(f"panels: {name!r} must be one of {', '.join(PANELS)}")

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from .._core import Status, TargetFilter, Tick, Tracker
 from .._types import Array
 from ..arms import Arm
-from ..bounds import Bound, bounds_of, clearance_among
+from ..bounds import Bound, bounds_of, clearance_among, largest_torques
 from ..clearance import Clearance
 from ..joints import JointLimits, limits_of
 from ..robots import Robot
@@ -33,25 +33,34 @@ SAID = 0.25  # status is the worst status of the last SAID seconds, because a ti
 
 
 class Strip:
-    """Speed, acceleration and jerk of the joint closest to its bound, relative to this bound, and the task scale.
+    """Speed, acceleration, jerk and torque of the joint closest to a bound, relative to the bound, and the task scale.
 
-    shares has a row for each quantity and a column for each tick of the last ten seconds, shape (4, N); 0 without a
-    bound. A stack has a scale for each level, shape (3 + levels, N). The jerk of a tick is the difference of its mean
-    acceleration from the mean acceleration of the previous tick, divided by the length of a tick.
+    shares has a row for each quantity and a column for each tick of the last ten seconds, shape (5, N); 0 without a
+    bound. A stack has a scale for each level, shape (4 + levels, N). The jerk of a tick is the difference of its mean
+    acceleration from the mean acceleration of the previous tick, divided by the length of a tick. The torque is the
+    torque of inverse dynamics at the end of the tick. An arm without masses or efforts has no row for torques.
     """
 
-    def __init__(self, limits: JointLimits, dt: float, levels: int = 1) -> None:
-        self._dt, self._count = dt, 0
+    def __init__(
+        self, arm: Arm | Robot, limits: JointLimits, dt: float, bounds: Sequence[Bound] = (), levels: int = 1
+    ) -> None:
+        self._arm, self._dt, self._count = arm, dt, 0
         self._bounds = np.array([limits.velocity, limits.acceleration, limits.jerk], dtype=float)
-        self._before = np.zeros(len(limits.velocity))
+        torques = largest_torques(arm, limits, bounds)
+        if arm.has_dynamics and np.isfinite(torques).any():
+            self._bounds = np.vstack([self._bounds, torques])
+        self._before = np.zeros(arm.dof)
         self._width = max(round(SECONDS / dt / POINTS), 1)
-        self.shares: Array = np.empty((3 + levels, 0))
+        self.shares: Array = np.empty((len(self._bounds) + levels, 0))
 
     def add(self, ticks: Sequence[Tick]) -> None:
         """Add consecutive ticks, at least one."""
-        qd, qdd = np.array([tick.qd for tick in ticks]), np.array([tick.qdd for tick in ticks])
+        q, qd, qdd = (np.array([getattr(tick, name) for tick in ticks]) for name in ("q", "qd", "qdd"))
         jerk = np.diff(qdd, axis=0, prepend=self._before[None]) / self._dt
-        shares = [(np.abs(each) / bound).max(axis=1) for each, bound in zip((qd, qdd, jerk), self._bounds)]
+        motions = [qd, qdd, jerk]
+        if len(self._bounds) > len(motions):
+            motions.append(self._arm.inverse_dynamics(q, qd, qdd))
+        shares = [(np.abs(each) / bound).max(axis=1) for each, bound in zip(motions, self._bounds)]
         scales = np.array([tick.scale if tick.scales is None else tick.scales for tick in ticks])
         new = np.vstack([*shares, scales.reshape(len(ticks), -1).T])
         self._before, self._count = qdd[-1], self._count + len(ticks)
@@ -59,11 +68,11 @@ class Strip:
 
     @property
     def bounded(self) -> tuple[bool, ...]:
-        """Whether any joint has a bound on speed, acceleration, jerk."""
+        """Whether any joint has a bound on speed, acceleration, jerk and, if there is a row, torque."""
         return tuple(np.isfinite(self._bounds).any(axis=1).tolist())
 
     def curves(self) -> tuple[Array, Array]:
-        """Times [s], shape (POINTS,), and the worst of the interval that ends at each time, shape (3 + levels, POINTS).
+        """Times [s], shape (POINTS,), and the worst of the interval that ends at each time, shape (rows, POINTS).
 
         An interval always has the same ticks, so a peak keeps its height while the chart scrolls. NaN before the start.
         """
@@ -71,7 +80,8 @@ class Strip:
         there = self.shares[:, :end][:, -POINTS * self._width :]
         there = np.pad(there, [(0, 0), (POINTS * self._width - there.shape[1], 0)], constant_values=np.nan)
         stretches = there.reshape(-1, POINTS, self._width)
-        worst = np.vstack([stretches[:3].max(axis=2), stretches[3:].min(axis=2)])
+        bounds = len(self._bounds)
+        worst = np.vstack([stretches[:bounds].max(axis=2), stretches[bounds:].min(axis=2)])
         times: Array = (self._count // self._width + np.arange(1.0 - POINTS, 1.0)) * self._width * self._dt
         return times, worst
 
@@ -187,7 +197,8 @@ class ServoLoop:
             self.tick = None
             self._seen = []
             self._said.clear()
-            self.strip: Strip = Strip(self.limits, self.dt, 1 if self.stack is None else len(self.stack.levels))
+            levels = 1 if self.stack is None else len(self.stack.levels)
+            self.strip: Strip = Strip(self.arm, self.limits, self.dt, self.bounds, levels)
             self.time: float = 0.0  # Simulated time [s].
             self._owed: float = 0.0  # Elapsed time that no tick has simulated [s], less than a tick.
             self._last = self._clock()

@@ -34,7 +34,7 @@ HINTS = {
     Status.RECOVERING: "Wait until the arm is in that posture.",
     Status.STALLED: "Drag the handle into the workspace, or around a limit or a shape that blocks the arm.",
 }
-NAMES = ("speed", "acceleration", "jerk")
+NAMES = ("speed", "acceleration", "jerk", "torque")
 
 
 class Readout:
@@ -190,10 +190,12 @@ def _rows(loop: ServoLoop) -> Iterator[tuple[str, ...]]:
     there = worst[:, ~np.isnan(worst[0])]
     now, far = "", ""
     yield "th", "largest fraction of a bound", "now", f"in {SECONDS:g} s"
-    names = [f"joint {name}" for name in NAMES]
-    for i, (name, bounded) in enumerate(zip([*names, *_scales(loop)], [*loop.strip.bounded, *[True] * len(worst)])):
+    limited = loop.strip.bounded
+    names = [f"joint {name}" for name in NAMES[: len(limited)]]
+    for i, (name, bounded) in enumerate(zip([*names, *_scales(loop)], [*limited, *[True] * len(worst)])):
         if there.size:
-            now, far = (f"{100.0 * x:.0f} %" for x in (there[i, -1], there[i].max() if i < 3 else there[i].min()))
+            worst_of = np.max if i < len(limited) else np.min
+            now, far = (f"{100.0 * x:.0f} %" for x in (there[i, -1], worst_of(there[i])))
         yield "td", name, *((now, far) if bounded else ("no bound", ""))
     limits, q, tick = loop.limits, loop.q, loop.tick
     on_bound = (q < limits.lower + NEAR) | (q > limits.upper - NEAR)
@@ -219,9 +221,9 @@ class StripChart:
     """The last ten seconds: each quantity of the joint closest to its bound, and the scale of each level [%]."""
 
     def __init__(self, gui: GuiApi, loop: ServoLoop) -> None:
-        known = zip(NAMES, LINES[:1] + LINES[5:6] + LINES[3:4], loop.strip.bounded)
+        known = zip(NAMES, LINES[:1] + LINES[5:6] + LINES[3:4] + LINES[2:3], loop.strip.bounded)
         curves = [curve(name if there else f"{name} (no bound)", colour) for name, colour, there in known]
-        scales = zip(_scales(loop), LINES[6:7] + LINES[1:3] + LINES[4:5])
+        scales = zip(_scales(loop), LINES[6:7] + LINES[1:2] + LINES[4:5] + LINES[7:])
         curves += [curve(name, colour, dash=[6, 3]) for name, colour in scales]
         with gui.add_folder(f"Last {SECONDS:g} s"):
             self._plot = gui.add_uplot(
