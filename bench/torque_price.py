@@ -74,9 +74,7 @@ def tsid_motion(made: Machine, start: Array, target: Array, share: float) -> Tsi
     import tsid
 
     n, limits, effort = made.arm.dof, made.limits, share * made.arm.limits.effort
-    robot = tsid.RobotWrapper(made.torques.model, False)
-    robot.set_rotor_inertias(np.zeros(n))
-    robot.set_gear_ratios(np.zeros(n))
+    robot = tsid.RobotWrapper(made.torques.model, tsid.RootJointType.FIXED_BASE_SYSTEM, False)
     problem = tsid.InverseDynamicsFormulationAccForce("tsid", robot, False)
     problem.computeProblemData(0.0, start, np.zeros(n))
     posture = tsid.TaskJointPosture("posture", robot)
