@@ -176,9 +176,9 @@ fastest: $(VENV)/package $(VENV)/test
 	$(BIN)/python -m pip install --quiet --no-compile --group toppra
 	$(BIN)/python bench/fastest.py --count 170
 
-# The tables of docs/torques.md: 12,000 random motions, and the price compared with TSID. Needs hours.
+# The tables of docs/torques.md: 12,000 random motions, and the price compared with TSID, which pip builds. Needs hours.
 torque: $(VENV)/package $(VENV)/peers
-	$(BIN)/python -m pip install --quiet --no-compile --group tsid
+	$(BIN)/python -m pip install --quiet --no-compile 'tsid>=1.10'
 	$(BIN)/python bench/torque.py --count 12000 --price 200 --workers $(JOBS)
 
 # The tables of docs/dynamics.md: robots from URDF files and random trees, compared with Pinocchio.

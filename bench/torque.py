@@ -65,7 +65,10 @@ def print_rollouts(motions: Sequence[Any]) -> None:
             [
                 name,
                 f"{sum(each.ends > 1e-9 for each in own)}, {sum(each.ends_at_rest > 1e-9 for each in own)}",
-                f"{sum(each.blocked for each in torques_only) / max(ticks, 1):.2%}",
+                *(
+                    f"{sum(getattr(each, field) for each in torques_only) / max(ticks, 1):.2%}"
+                    for field in ("blocked", "blocked_at_rest")
+                ),
                 f"{np.mean([each.free_ends > 1e-9 for each in free]):.0%}, {max(each.free_ends for each in free):.1f}",
                 f"{np.median([each.change for each in free]):.3f}",
                 f"{np.median([each.free_change for each in free]):.3f}",
@@ -92,7 +95,12 @@ def print_rollouts(motions: Sequence[Any]) -> None:
     )
     print_table(
         [
-            *("robot", "motions with an excess > 1e-9 Nm: all, at rest", "refused ticks, without a clearance"),
+            *(
+                "robot",
+                "motions with an excess > 1e-9 Nm: all, at rest",
+                "refused ticks, without a clearance",
+                "at rest",
+            ),
             "without bounds on torque: motions that exceed the efforts, largest excess [Nm]",
             *("largest change of acceleration / A: median", "without bounds on torque"),
         ],

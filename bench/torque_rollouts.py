@@ -35,7 +35,8 @@ class Motion(NamedTuple):
     jerks: float
     distance: float  # Smallest distance of a pair beyond the margin [m].
     unanswered: int  # Ticks that raise an error, or whose result is not finite.
-    blocked: int
+    blocked: int  # Ticks that continue the planned stop because the bounds refuse every other motion.
+    blocked_at_rest: int  # The same, only of an arm at rest.
     stops: int  # Planned stops that were replayed until rest.
     unstopped: int  # Stops that did not end.
     longest_stop: float  # [s]
@@ -121,7 +122,7 @@ class Record:
     def __init__(self, tracker: fp.Tracker, margin: float) -> None:
         self.tracker, self.margin = tracker, margin
         self.q, self.qd = [tracker.q], [tracker.qd]
-        self.distance, self.blocked, self.unanswered = np.inf, 0, 0
+        self.distance, self.blocked, self.blocked_at_rest, self.unanswered = np.inf, 0, 0, 0
 
     def tick(self, target: Any) -> None:
         try:
@@ -129,10 +130,12 @@ class Record:
         except Exception:
             self.unanswered += 1
             return
+        blocked = tick.status == fp.Status.BLOCKED
+        self.blocked += blocked
+        self.blocked_at_rest += blocked and not np.any(self.qd[-1])
         self.q.append(tick.q)
         self.qd.append(tick.qd)
         self.unanswered += not (np.isfinite(tick.q).all() and np.isfinite(tick.qd).all())
-        self.blocked += tick.status == fp.Status.BLOCKED
         if tick.nearest is not None:
             self.distance = min(self.distance, tick.nearest.distance - self.margin)
 
@@ -233,6 +236,7 @@ def motion(seed: int, number: int) -> Motion:
         record.distance,
         record.unanswered,
         record.blocked,
+        record.blocked_at_rest,
         *stops,
         float(np.max(np.abs(np.diff(acceleration, axis=0)) / limits.acceleration)),
         free_change,
