@@ -17,7 +17,7 @@ BENCHMARK := /usr/include/benchmark/benchmark.h:libbenchmark-dev
 CXX_SOURCES = $(shell find cpp python tests bench examples web ros2 -name '*.[ch]pp')
 
 .DELETE_ON_ERROR:
-.PHONY: help demo page test homes test-cpp test-python test-docs test-view clang sanitize nightly arm64 arm64-wheel windows macos cross firmware packages fuzz soak motions grasp inverse fastest dynamics peers lint \
+.PHONY: help demo page test homes test-cpp test-python test-docs test-view clang sanitize nightly arm64 arm64-wheel windows macos cross firmware packages fuzz soak motions grasp inverse fastest torque dynamics peers lint \
         prose format stubs docs notebooks bench count stalls worst sdist wheel clean
 
 help:
@@ -39,6 +39,7 @@ help:
 	@echo 'make grasp            10,000 motions of a tray in two arms, and a few by Pink, Mink, PlaCo and roboplan'
 	@echo 'make inverse          inverse kinematics: solved poses and times, compared with other libraries'
 	@echo 'make fastest          motions in the least time: bounds, distance from the path, comparison with TOPP-RA'
+	@echo 'make torque           random motions within bounds on torque, and the time that the bounds cost'
 	@echo 'make dynamics         dynamics: errors relative to Pinocchio, and times'
 	@echo 'make peers            the programs of docs/coming_from.md, in environments of their own'
 	@echo 'make fuzz             look for input that breaks the tracker, for SECONDS=$(SECONDS)'
@@ -174,6 +175,11 @@ inverse: $(VENV)/package $(VENV)/test $(VENV)/peers
 fastest: $(VENV)/package $(VENV)/test
 	$(BIN)/python -m pip install --quiet --no-compile --group toppra
 	$(BIN)/python bench/fastest.py --count 170
+
+# The tables of docs/torques.md: 12,000 random motions, and the price compared with TSID, which pip builds. Needs hours.
+torque: $(VENV)/package $(VENV)/peers
+	$(BIN)/python -m pip install --quiet --no-compile 'tsid>=1.10'
+	$(BIN)/python bench/torque.py --count 12000 --price 200 --workers $(JOBS)
 
 # The tables of docs/dynamics.md: robots from URDF files and random trees, compared with Pinocchio.
 dynamics: $(VENV)/peers $(VENV)/bench
