@@ -54,7 +54,9 @@ TorqueBounds<kDynamic> torque_bounds_of(const Model& model, const py::handle& gi
   std::optional<AnyDynamics> lighter;
   if (const py::object other = field(given, "lighter"); !other.is_none()) {
     const auto& light = py::cast<const Model&>(other);
-    validation::require_size("joints of lighter", light.robot.joints(), model.robot.joints());
+    if (light.joint_names != model.joint_names || light.gravity != model.gravity) {
+      validation::reject("lighter", ": must be the same arm, with a smaller payload");
+    }
     lighter = light.dynamics();
   }
   return {model.tree, model.dynamics(), most, lighter};

@@ -246,6 +246,7 @@ struct Result {
     tracker.stop();
     for (int k = 0; k < 20000 && !tracker.state().qd.isZero(0.0); ++k) tick(reference, result.stops);
     EXPECT_TRUE(tracker.state().qd.isZero(0.0)) << "the arm does not come to rest";
+    result.stops.add(motion, model, tracker.state(), Joints::Zero());
     tracker.resume();
   }
   return result;

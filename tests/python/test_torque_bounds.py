@@ -108,7 +108,6 @@ def test_every_mass_between_two_keeps_the_bounds():
     assert all(largest_excess(arm, bound, q, qd, 1e-3) <= 1e-9 for arm in masses)
 
 
-@pytest.mark.xfail(strict=True, reason="the certificate ends with the last tick in motion, before the posture at rest")
 def test_an_arm_rests_only_in_postures_that_it_can_hold():
     """Targets of the tip of a Panda with 3 kg, many of them behind postures that 60 % of the efforts cannot hold."""
     arm, fraction = ROBOTS["panda"][0](), 0.6

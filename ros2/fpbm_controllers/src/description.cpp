@@ -103,7 +103,7 @@ fpbm::Tree<> tree_of(const std::string& robot_description, const std::string& ba
       const auto number = static_cast<int>(known - moving.begin());
       if (known == moving.end()) {
         moving.push_back(*up);
-        tree.joints.push_back({joint_of(**up, place), carrier, {}});
+        tree.joints.push_back({joint_of(**up, place), carrier});
       }
       carrier = number + 1;
       place = {};

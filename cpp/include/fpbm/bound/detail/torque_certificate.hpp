@@ -65,7 +65,7 @@ class TorqueCertificate {
       if (!keeps_part(models, most, limits, *start, plan, part, ends_[end])) return false;
       start = &ends_[end];
     }
-    return true;
+    return start->keeps(most, none_);  // At rest.
   }
 
   /// After keeps() was false: fraction of the decelerations with which the bounds are kept where they were exceeded. 0
