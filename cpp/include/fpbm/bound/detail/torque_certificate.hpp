@@ -1,7 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <utility>
+#include <vector>
 
 #include "fpbm/bound/detail/torque_deviation.hpp"
 #include "fpbm/bound/detail/torque_state.hpp"
@@ -31,12 +34,6 @@ class TorqueCertificate {
         next_(here_),
         ends_{here_, here_},
         none_(filled<JointVector>(models[0].dof())) {}
-
-  /// The models have other payloads.
-  void set(const Models& models) noexcept {
-    deviation_.set(models.back());
-    here_ = next_ = ends_[0] = ends_[1] = TorqueState<N, Scalar>(models[0].dof(), models.size());
-  }
 
   /// Starts a tick, which may evaluate kEvaluations states. Returns the torques in a state, which remain valid in the
   /// tick.
@@ -73,7 +70,8 @@ class TorqueCertificate {
   [[nodiscard]] Scalar kept_fraction() const noexcept { return kept_fraction_; }
 
  private:
-  /// Most states that are evaluated in one tick: the longest ticks are 160,000 instructions (make count).
+  /// Most states that are evaluated in one tick: a compromise. Of 60,000 ticks of a Panda with 3 kg at 80 % of its
+  /// efforts, 2,347 continue the stop with 24 evaluations, 1,630 with 48, and 1,348 with 96.
   static constexpr int kEvaluations = 40;
 
   /// Advances a plan and a part of the stop, from the torques `start` to the torques `end`, by as many ticks as are
