@@ -159,8 +159,13 @@ def test_runs_without_torques() -> None:
     run = fp.simulate(MASSLESS, fp.Circle(0.1, 1.0), fp.MVN(k=5), [0.3, 0.4, 0.5], dt=0.01)
     assert run.torque is None
     assert "torque" not in run.bound_ratios()
+
+
+def test_a_panel_of_torques_needs_torques() -> None:
+    pytest.importorskip("matplotlib")
+    run = fp.simulate(MASSLESS, fp.Circle(0.1, 1.0), fp.MVN(k=5), [0.3, 0.4, 0.5], dt=0.01)
     with pytest.raises(ValueError, match="no data in this run"):
-        pytest.importorskip("fpbm_cpp.plot").plot_run(run, panels=["torques"])
+        run.plot(panels=["torques"])
 
 
 def test_ratios_to_the_efforts_and_to_torque_bounds(heavy: fp.Run, bounded: fp.Run) -> None:
