@@ -79,6 +79,8 @@ int main(int argc, char** argv) {
   count<Measured>("loop/panda/pose/measured", calls);
   count<FreeTick>("loop/panda/pose/free", calls);
   count<ClearTick>("loop/panda/pose/clear", calls);
+  count<FreeTorqueTick>("loop/panda/pose/free_torque", calls);
+  count<TorqueTick>("loop/panda/posture/torque", calls);
   count<LimitedTick<fpbm::Pose, false>>("loop/panda/pose/limited", calls);
   count<LimitedTick<fpbm::Pose, true>>("loop/panda/pose/limited_jerk", calls);
   count<LimitedTick<fpbm::Position<3>, false>>("loop/panda/position/limited", calls);

@@ -228,6 +228,17 @@ inline int near_pairs() {
   return count;
 }
 
+/// Torques of a Panda within a fraction of its efforts, with a load [kg] 15 cm beyond the flange.
+inline fpbm::TorqueBounds<7> torques(double fraction, double load) {
+  const auto chain = Panda::chain();
+  fpbm::Dynamics<7> model(chain);
+  fpbm::LinkInertia<> body;
+  body.mass = load;
+  body.centre = {0.0, 0.0, 0.15};
+  model.set_payload(fpbm::Robot<7>::kTip, body);
+  return {chain, model, fraction * fpbm::SerialArm<7>(chain).limits().effort};
+}
+
 /// A tick of a motion that swings by 10 cm, with and without a clearance.
 template <typename Bounds>
 class SwingingTick {
@@ -251,8 +262,10 @@ class SwingingTick {
     using Loop = fpbm::Tracker<fpbm::SerialArm<7>, fpbm::Pose, decltype(damped()), Bounds>;
     if constexpr (std::is_same_v<Bounds, fpbm::Bounds<>>) {
       return Loop(arm, fpbm::Pose{}, damped(), start, {}, limits);
-    } else {
+    } else if constexpr (std::is_same_v<Bounds, fpbm::Bounds<fpbm::Clearance<7>>>) {
       return Loop(arm, fpbm::Pose{}, damped(), start, {}, limits, fpbm::Vector<7>::Zero(), Bounds(surroundings()));
+    } else {
+      return Loop(arm, fpbm::Pose{}, damped(), start, {}, limits, fpbm::Vector<7>::Zero(), Bounds(torques(1.0, 0.0)));
     }
   }
 
@@ -262,6 +275,58 @@ class SwingingTick {
 };
 using FreeTick = SwingingTick<fpbm::Bounds<>>;
 using ClearTick = SwingingTick<fpbm::Bounds<fpbm::Clearance<7>>>;
+using FreeTorqueTick = SwingingTick<fpbm::Bounds<fpbm::TorqueBounds<7>>>;
+
+/// Tracker of postures of a Panda with 1.5 kg at 60 % of its efforts.
+inline auto loaded() {
+  const fpbm::Robot<7> robot(Panda::chain());
+  const fpbm::State<7> start{{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.8}, fpbm::Vector<7>::Zero()};
+  const fpbm::Limits<fpbm::Level::kAcceleration, 7> limits(fpbm::SerialArm<7>(Panda::chain()).limits(), 1e-3);
+  const auto law = fpbm::Balanced<7>(0.0, fpbm::UnitWeights{}, fpbm::NullSpace<7>().with_damping(2.0));
+  return fpbm::stack_tracker(robot, fpbm::Stack(fpbm::PostureTask<7>{fpbm::TaskGains<>(12.0, 36.0)}), law, start, {},
+                             limits, fpbm::Vector<7>(fpbm::Vector<7>::Zero()), fpbm::Bounds(torques(0.6, 1.5)));
+}
+
+/// A tick of loaded(), whose target posture jumps every 2,000 ticks: every 97th tick, unless the arm is at rest.
+class TorqueTick {
+ public:
+  TorqueTick() {
+    auto loop = loaded();
+    fpbm::Reference<fpbm::JointSpace<7>> target;
+    for (int turn = 0; loops_.size() < 128; ++turn) {
+      if (turn % 2000 == 0) target = fpbm::Reference<fpbm::JointSpace<7>>::hold(next_target());
+      if (turn % 97 == 0 && loop.state().qd.norm() > 0.01) loops_.emplace_back(loop, target);
+      loop.tick(target);
+    }
+  }
+  void operator()() noexcept {
+    auto& [loop, target] = loops_[turn_++ % loops_.size()];
+    auto result = loop.tick(target);
+    escape(result);
+    escape(*this);
+  }
+
+ private:
+  /// A random posture that the torques hold.
+  fpbm::Vector<7> next_target() {
+    const auto limits = fpbm::SerialArm<7>(Panda::chain()).limits();
+    const auto bounds = torques(0.5, 1.5);
+    for (;;) {
+      fpbm::Vector<7> q;
+      for (int i = 0; i < 7; ++i) {
+        q(i) = std::uniform_real_distribution<>(limits.lower(i) + 0.15, limits.upper(i) - 0.15)(random_);
+      }
+      fpbm::Dynamics<7>::State state;
+      bounds.model().robot().update(q, state);
+      const fpbm::Vector<7> torque = bounds.model().gravity_torque(state);
+      if ((torque.cwiseAbs().array() <= bounds.effort().array()).all()) return q;
+    }
+  }
+
+  std::mt19937 random_{1};
+  std::vector<std::pair<decltype(loaded()), fpbm::Reference<fpbm::JointSpace<7>>>> loops_;
+  std::size_t turn_ = 0;
+};
 
 /// The result for a measured state, without bounds on jerk, because consecutive states are unrelated.
 class Measured {

@@ -62,7 +62,17 @@ struct Start {
   return at;
 }
 
-/// advance() is equal to as many calls of next(), and the ranges contain every acceleration and speed.
+/// The largest g · u of the accelerations u of a part, according to its corners.
+[[nodiscard]] double largest(const StopPart<kN>& part, const Joints& g) {
+  double most = part.pauses ? 0.0 : -kInfinity;
+  for (std::size_t k = 0; k < part.corner_count; ++k) most = std::max(most, g.dot(part.corners[k]));
+  for (int i = 0; i < kN; ++i) {
+    if ((part.alone & joint_bit(i)) != 0) most += std::abs(g(i)) * (part.high(i) - part.low(i)) / 2.0;
+  }
+  return most;
+}
+
+/// advance() is equal to as many calls of next(), and the ranges and corners contain every acceleration and speed.
 TEST(StopAdvance, repeats_next) {
   Random random(1);
   for (int trial = 0; trial < trials(400); ++trial) {
@@ -73,7 +83,7 @@ TEST(StopAdvance, repeats_next) {
     const auto [start, last] = random_start(random, limits);
     Plan one(limits, start, last, random.uniform(0.1, 1.0));
     Plan other = one;
-    StopPart<kN> part{start, last, last, last, last};
+    StopPart<kN> part(start, last);
     State<kN> state = start;
     Joints before = last;
     const TickMotion<Level::kAcceleration, kN> motion{tick};
@@ -82,12 +92,14 @@ TEST(StopAdvance, repeats_next) {
       const Joints at_start = state.qd;
       Joints speed = at_start.cwiseAbs();
       advance(one, limits, ticks, part);
+      const Joints g = random.uniform(kN, -1.0, 1.0);
       for (double k = 0.0; k < ticks; k += 1.0) {
         before = other.next(limits, state, before);
         state = motion.after(state, before);
         speed = speed.cwiseMax(state.qd.cwiseAbs());
         ASSERT_GE((before - part.low).minCoeff(), -1e-9);
         ASSERT_GE((part.high - before).minCoeff(), -1e-9);
+        ASSERT_LE(g.dot(before), largest(part, g) + 1e-8);
       }
       ASSERT_GE((part.speed - speed).minCoeff(), -1e-11);
       ASSERT_LE((part.state.q - state.q).cwiseAbs().maxCoeff(), 1e-12) << trial;
@@ -104,51 +116,6 @@ TEST(StopAdvance, repeats_next) {
   Dynamics<kN>::State at;
   model.robot().update(state.q, state.qd, at);
   return model.inverse_dynamics(at, u);
-}
-
-[[nodiscard]] Matrix<kN, kN> mass_matrix(const Dynamics<kN>& model, const State<kN>& state) {
-  Dynamics<kN>::State at;
-  model.robot().update(state.q, at);
-  return model.mass_matrix(at);
-}
-
-/// In every tick of a part, the torques for any constant acceleration within the ranges are between the torques at both
-/// ends of the part, up to the deviation.
-TEST(TorqueDeviation, bounds_the_torques_between_two_ends) {
-  Random random(2);
-  double closest = kInfinity;
-  for (int trial = 0; trial < trials(400); ++trial) {
-    const Chain<> chain = panda_with(random.uniform(0.0, 3.0));
-    const Dynamics<kN> model(chain, random.uniform(3, -9.0, 9.0));
-    const TorqueDeviation<kN> deviation(chain, model);
-    auto bounds = limits_of(chain, trial % 2 == 0);
-    if (trial % 4 == 0) bounds.jerk /= 20.0;
-    const MotionLimits limits(bounds, 1e-3);
-    const auto [start, last] = random_start(random, limits);
-    Plan plan(limits, start, last, random.uniform(0.1, 1.0));
-    StopPart<kN> part{start, last, last, last, last};
-    const double skipped = std::floor(random.uniform(0.0, 0.9) * plan.ticks_left());
-    if (skipped > 0.0) advance(plan, limits, skipped, part);
-    const State<kN> from = part.state;
-    Plan inner = plan;
-    const double ticks = std::min(plan.phase_ticks(), std::ceil(random.uniform(0.0, 60.0)));
-    StopPart<kN> to = part;
-    advance(plan, limits, ticks, to);
-    const Joints more = deviation.of(mass_matrix(model, from), to, plan.velocity(), ticks * limits.tick());
-    const Joints u = to.low + random.uniform(kN, 0.0, 1.0).cwiseProduct(to.high - to.low);
-    const Joints a = torque(model, from, u);
-    const Joints b = torque(model, to.state, u);
-    for (double k = 0.0; k < ticks; k += 1.0) {
-      advance(inner, limits, 1.0, part);
-      const Joints t = torque(model, part.state, u);
-      ASSERT_GE((a.cwiseMax(b) + more - t).minCoeff(), -1e-9) << trial;
-      ASSERT_GE((t + more - a.cwiseMin(b)).minCoeff(), -1e-9) << trial;
-      if (ticks > 5.0 && more.minCoeff() > 1e-3) {
-        closest = std::min(closest, ((a.cwiseMax(b) + more - t).array() / more.array()).minCoeff());
-      }
-    }
-  }
-  EXPECT_LT(closest, 0.995);  // Some torques leave the interval between both ends.
 }
 
 struct Motion {

@@ -116,16 +116,16 @@ class TorqueBounds {
       const Eigen::Index most = rows.count + kRows;
       const JointVector& bound = next.limits.bounds().acceleration;
       for (std::size_t k = 0; k < models_.size(); ++k) {
-        const JointVector first = now.of[k](u);
-        const JointVector last = later.of[k](u);
         for (Eigen::Index i = 0; i < u.size(); ++i) {
           const Scalar reach = std::abs(now.of[k].h(i)) + sum_over(u, [&](Eigen::Index j) {
-                                 return std::abs(now.of[k].M.coeff(i, j)) * bound.coeff(j);
+                                 return std::abs(now.of[k].M.coeff(j, i)) * bound.coeff(j);
                                });
           if (!(reach > kNear * most_(i))) continue;
+          const Scalar first = now.of[k].at(i, u);
+          const Scalar last = later.of[k].at(i, u);
           for (const Scalar sign : {Scalar(1), Scalar(-1)}) {
             if (rows.count == most) return;
-            const auto& torque = (sign * first(i) > sign * last(i) ? now : later).of[k];
+            const auto& torque = (sign * first > sign * last ? now : later).of[k];
             for (Eigen::Index j = 0; j < u.size(); ++j) rows.g(j, rows.count) = sign * torque.M(i, j);
             rows.b(rows.count++) = (Scalar(1) - kSlack) * most_(i) - sign * torque.h(i);
           }

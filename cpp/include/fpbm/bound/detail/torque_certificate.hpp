@@ -1,8 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -16,8 +18,9 @@ namespace fpbm {
 /// Checks whether the torques keep their bounds at the start and at the end of each tick of a stopping trajectory
 /// (docs/torques_proof.md).
 ///
-/// The trajectory is checked in parts of as many ticks as TorqueDeviation allows, from the start on. Torques are
-/// evaluated at the ends of the parts.
+/// The trajectory is checked in parts of as many ticks as TorqueDeviation allows, from the start on. The torques at the
+/// ends of the parts are evaluated, or taken from the stop of the tick before if both states are so near that
+/// TorqueDeviation proves the bounds.
 template <int N, typename Scalar = double, int Joints = N>
 class TorqueCertificate {
  public:
@@ -30,39 +33,31 @@ class TorqueCertificate {
   template <typename Source>
   TorqueCertificate(const Source& source, const Models& models)
       : deviation_(source, models.back()),
-        here_(models[0].dof(), models.size()),
-        next_(here_),
-        ends_{here_, here_},
+        braking_(models[0].dof(), models.size()),
+        tick_{braking_, braking_},
+        ends_{braking_, braking_, braking_, braking_, braking_, braking_,
+              braking_, braking_, braking_, braking_, braking_, braking_},
         none_(filled<JointVector>(models[0].dof())) {}
 
-  /// Starts a tick, which may evaluate kEvaluations states. Returns the torques in a state, which remain valid in the
+  /// Starts a tick, which may spend kLargestCost. Returns the torques in a state, which remain valid in the
   /// tick.
   const TorqueState<N, Scalar>& begin(const Models& models, const State<N, Scalar>& state) noexcept {
-    evaluations_ = 0;
-    if (next_.is_at(state)) std::swap(here_, next_);
-    return evaluated(here_, models, state);
+    cost_ = 0;
+    wary_ = std::max(wary_ - 1, 0);
+    if (next().is_at(state)) here_ = 1 - here_;
+    return evaluated(here(), models, state);
   }
   /// The torques at the predicted end of the tick. keeps() may change the result.
   const TorqueState<N, Scalar>& ahead(const Models& models, const State<N, Scalar>& state) noexcept {
-    return evaluated(next_, models, state);
+    return evaluated(next(), models, state);
   }
 
   /// Whether |τ| ≤ most in the tick from a state and in the stop after the tick.
   [[nodiscard]] bool keeps(const Models& models, const JointVector& most, const MotionLimits& limits,
                            const State<N, Scalar>& from, const StopOf& stop) noexcept {
-    kept_fraction_ = Scalar(0);
-    if (evaluations_ > kEvaluations) return false;
-    StopPart<N, Scalar> part{stop.start, stop.plan.last(), none_, none_, none_};
-    if (!is_finite(part.state.q) || !is_finite(part.state.qd)) return false;
-    if (!evaluated(here_, models, from).keeps(most, part.last)) return false;
-    if (!evaluated(next_, models, part.state).keeps(most, part.last)) return false;
-    auto plan = stop.plan;
-    const TorqueState<N, Scalar>* start = &next_;
-    for (std::size_t end = 0; plan.ticks_left() > Scalar(0); end = 1 - end) {
-      if (!keeps_part(models, most, limits, *start, plan, part, ends_[end])) return false;
-      start = &ends_[end];
-    }
-    return start->keeps(most, none_);  // At rest.
+    const bool kept = keeps_stop(models, most, limits, from, stop);
+    if (!kept) wary_ = kWaryTicks;
+    return kept;
   }
 
   /// After keeps() was false: fraction of the decelerations with which the bounds are kept where they were exceeded. 0
@@ -70,59 +65,133 @@ class TorqueCertificate {
   [[nodiscard]] Scalar kept_fraction() const noexcept { return kept_fraction_; }
 
  private:
-  /// Most states that are evaluated in one tick: a compromise. Of 60,000 ticks of a Panda with 3 kg at 80 % of its
-  /// efforts, 2,347 continue the stop with 24 evaluations, 1,630 with 48, and 1,348 with 96.
-  static constexpr int kEvaluations = 40;
+  TorqueState<N, Scalar>& here() noexcept { return tick_[here_]; }
+  TorqueState<N, Scalar>& next() noexcept { return tick_[1 - here_]; }
 
-  /// Advances a plan and a part of the stop, from the torques `start` to the torques `end`, by as many ticks as are
-  /// proved to keep the bounds. Returns whether any are.
+  /// Stops have as many parts at most, as a rule.
+  static constexpr std::size_t kEnds = 12;
+  /// Costs of an evaluation and of a stop. A part has the cost 1: for a Panda, about 2,500 instructions.
+  static constexpr int kEvaluation = 2;
+  static constexpr int kStop = 2;
+  /// Largest cost of a tick, so that a tick of a Panda takes less than 160,000 instructions. Of 60,000 ticks of a Panda
+  /// with 3 kg at 80 % of its efforts, 12,805 continue the stop with 21, 4,152 with 42, and 2,608 with 84.
+  static constexpr int kLargestCost = 42;
+  /// Number of ticks after a refused stop in which may_keep() is called: a choice.
+  static constexpr int kWaryTicks = 50;
+
+  [[nodiscard]] bool keeps_stop(const Models& models, const JointVector& most, const MotionLimits& limits,
+                                const State<N, Scalar>& from, const StopOf& stop) noexcept {
+    kept_fraction_ = Scalar(0);
+    if ((cost_ += kStop) > kLargestCost) return false;
+    StopPart<N, Scalar> part(stop.start, stop.plan.last());
+    if (!evaluated(here(), models, from).keeps(most, part.last)) return false;
+    if (!evaluated(next(), models, part.state).keeps(most, part.last)) return false;
+    auto plan = stop.plan;
+    if (wary_ > 0 && first_ < plan.ticks_left() && !may_keep(models, most, limits, plan, part)) return false;
+    likely_ = first_;
+    TorqueState<N, Scalar>* start = &next();
+    for (std::size_t k = 0; plan.ticks_left() > Scalar(0); k = k + 1 < kEnds ? k + 1 : k - 1) {
+      if (!keeps_part(models, most, limits, *start, plan, part, k)) return false;
+      start = &ends_[k];
+    }
+    return start != &next() || next().keeps(most, none_);  // If the tick ends at rest.
+  }
+
+  /// Whether |τ| ≤ most at the end of the full deceleration, and with no acceleration there: most stops that exceed a
+  /// bound exceed the bound there.
+  [[nodiscard]] bool may_keep(const Models& models, const JointVector& most, const MotionLimits& limits,
+                              StopPlan<Level::kAcceleration, N, Scalar> plan, StopPart<N, Scalar> part) noexcept {
+    const Scalar ticks = plan.braking_ticks();
+    if (!(ticks > Scalar(0))) return true;
+    advance(plan, limits, ticks, part);
+    if (!braking_.is_at(part.state)) {
+      const JointVector more = deviation_.between(braking_.of[models.size() - 1].M, braking_.at, part.state, part);
+      if (braking_.kept_part(most, part, more, true) >= Scalar(1)) return true;
+      if (!braking_.exceeds(most, part.last, more)) evaluated(braking_, models, part.state);
+    }
+    if (!braking_.keeps(most, part.last)) kept_fraction_ = braking_.kept_fraction(most, part.last);
+    // A slower stop ends farther away.
+    return kept_fraction_ == Scalar(0) && braking_.keeps(most, none_);
+  }
+
+  /// Advances a plan and a part of the stop by as many ticks as are proved to keep the bounds. Returns whether any are.
+  /// start: torques near the start of the part. k: index of the part.
   [[nodiscard]] bool keeps_part(const Models& models, const JointVector& most, const MotionLimits& limits,
-                                const TorqueState<N, Scalar>& start, StopPlan<Level::kAcceleration, N, Scalar>& plan,
-                                StopPart<N, Scalar>& part, TorqueState<N, Scalar>& end) noexcept {
-    const auto before = part;
-    for (Scalar ticks = plan.phase_ticks();;) {
+                                TorqueState<N, Scalar>& start, StopPlan<Level::kAcceleration, N, Scalar>& plan,
+                                StopPart<N, Scalar>& part, std::size_t k) noexcept {
+    const auto from = part.state;
+    const auto last = part.last;
+    for (Scalar ticks = std::min(plan.ticks_left(), likely_); cost_ < kLargestCost;) {
+      ++cost_;
       auto next = plan;
-      part = before;
       advance(next, limits, ticks, part);
       const bool single = !(ticks > Scalar(1));
-      const JointVector deviation =
-          single ? none_ : deviation_.of(start.of[models.size() - 1].M, part, plan.velocity(), ticks * limits.tick());
-      Scalar kept = start.kept_part(most, part.low, part.high, deviation);
-      if (kept >= Scalar(1)) {
-        if (!evaluated(end, models, part.state).keeps(most, part.last)) {
-          kept_fraction_ = end.kept_fraction(most, part.last);
-          return false;
-        }
-        if (evaluations_ > kEvaluations) return false;
-        kept = end.kept_part(most, part.low, part.high, deviation);
-        if (kept >= Scalar(1)) {
-          plan = next;
-          return true;
-        }
-      }
-      if (single) {
-        kept_fraction_ = start.kept_fraction(most, part.last);
-        return false;
+      const bool rests = !(next.ticks_left() > Scalar(0));
+      const JointVector deviation = single ? none_
+                                           : deviation_.of(start.of[models.size() - 1].M, start.at.q, from.q, part,
+                                                           plan.velocity(), ticks * limits.tick());
+      Scalar part_kept = kept(models, most, start, from, part, deviation, false);
+      if (part_kept >= Scalar(1)) {
+        part_kept = std::min(part_kept, kept(models, most, ends_[k], part.state, part, deviation, rests));
       }
       // The deviation increases with the square of the duration, approximately.
-      const Scalar shorter = std::sqrt(std::max(kept, Scalar(0)));
-      ticks = std::max(std::floor(ticks * std::clamp(shorter, Scalar(0.2), Scalar(0.8))), Scalar(1));
+      const Scalar root = std::sqrt(std::max(part_kept, Scalar(0)));
+      if (part_kept >= Scalar(1)) {
+        likely_ = rests ? std::numeric_limits<Scalar>::infinity()
+                        : std::ceil(ticks * std::max(Scalar(0.85) * root, Scalar(1)));
+        if (k == 0) first_ = likely_;
+        plan = next;
+        return true;
+      }
+      if (ends_[k].is_at(part.state) && !(ends_[k].keeps(most, part.last) && (!rests || ends_[k].keeps(most, none_)))) {
+        kept_fraction_ = ends_[k].kept_fraction(most, part.last);
+        return false;
+      }
+      if (single || part_kept < Scalar(-1)) {
+        // The accelerations of the ramp do not depend on the fraction of the deceleration.
+        const bool slower = !plan.ramps() || start.keeps(most, part.corners[0]);
+        if (slower) kept_fraction_ = start.kept_fraction(most, part.corners[part.corner_count - 1]);
+        return false;
+      }
+      ticks = std::max(std::floor(ticks * std::clamp(Scalar(0.9) * root, Scalar(0.2), Scalar(0.9))), Scalar(1));
+      part.state = from;
+      part.last = last;
     }
+    return false;
+  }
+
+  /// Largest fraction of `deviation` with which the torques in the state `at` keep the bounds for the accelerations of
+  /// a part, at rest too if the part ends at rest. torques: of a state near `at`, or replaced by the torques in this
+  /// state.
+  [[nodiscard]] Scalar kept(const Models& models, const JointVector& most, TorqueState<N, Scalar>& torques,
+                            const State<N, Scalar>& at, const StopPart<N, Scalar>& part, const JointVector& deviation,
+                            bool rests) noexcept {
+    if (!torques.is_at(at)) {
+      JointVector least = deviation_.between(torques.of[models.size() - 1].M, torques.at, at, part);
+      for (Eigen::Index i = 0; i < least.size(); ++i) least.coeffRef(i) = most.coeff(i) - least.coeff(i);
+      const Scalar near = torques.kept_part(least, part, deviation, rests);
+      if (near >= Scalar(1)) return near;
+    }
+    return evaluated(torques, models, at).kept_part(most, part, deviation, rests);
   }
 
   const TorqueState<N, Scalar>& evaluated(TorqueState<N, Scalar>& torques, const Models& models,
                                           const State<N, Scalar>& state) noexcept {
-    evaluations_ += torques.set(models, state, memory_) ? 1 : 0;
+    if (torques.set(models, state, memory_)) cost_ += kEvaluation;
     return torques;
   }
 
   TorqueDeviation<N, Scalar, Joints> deviation_;
-  TorqueState<N, Scalar> here_;     ///< At the start of the tick.
-  TorqueState<N, Scalar> next_;     ///< At the end of the tick.
-  TorqueState<N, Scalar> ends_[2];  ///< At the ends of the last two parts of the stop.
+  TorqueState<N, Scalar> braking_;                          ///< At the end of the full deceleration.
+  std::array<TorqueState<N, Scalar>, 2> tick_;              ///< At the start and at the end of the tick, alternately.
+  std::array<TorqueState<N, Scalar>, kEnds> ends_;          ///< Near the ends of the parts of the stop.
+  Scalar first_ = std::numeric_limits<Scalar>::infinity();  ///< Likely length of the first part of a stop [ticks].
   JointVector none_;
   typename Model::State memory_;
-  int evaluations_ = 0;
+  Scalar likely_ = Scalar(1);  ///< Likely length of the next part [ticks].
+  std::size_t here_ = 0;
+  int cost_ = 0;
+  int wary_ = 0;
   Scalar kept_fraction_ = Scalar(0);
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fpbm/bound/detail/field_norms.hpp"
 #include "fpbm/bound/detail/levers.hpp"
 #include "fpbm/limits/detail/stop_part.hpp"
 #include "fpbm/linalg/detail/entrywise.hpp"
@@ -12,11 +13,12 @@
 namespace fpbm {
 
 /// Bounds on the deviation of the torques along a part of a stopping trajectory from the linear interpolation between
-/// both ends of the part, for constant accelerations (docs/torques_proof.md, "Between two evaluations").
+/// both ends of the part, for constant accelerations, and on the difference of the torques in two states
+/// (docs/torques_proof.md, "Between two evaluations").
 ///
 /// Let s_i = √∫‖∂x/∂q_i‖² dm, over all mass points x, and S_i ≥ s_k for k ≥ i. At a posture, s_i² = M_ii without
-/// rotors. In a part, s_i increases by at most Σ_{k>i} |Δq_k| S_k. The derivatives of the torques are products of
-/// entries of S and of velocities, accelerations and the gravity.
+/// rotors. In a part, s_i increases by at most Σ_{k>i} |Δq_k| S_k. The torques and their derivatives are sums of
+/// products of S, velocities, accelerations and the gravity.
 template <int N, typename Scalar = double, int Joints = N>
 class TorqueDeviation {
  public:
@@ -27,16 +29,16 @@ class TorqueDeviation {
   /// source: the Tree or the Chain of the robot. Throws std::invalid_argument if a lever is infinite.
   template <typename Source>
   TorqueDeviation(const Source& source, const Model& model)
-      : levers_(source),
+      : drives_(model.robot().drives()),
+        levers_(source),
         viscous_(filled<JointVector>(model.dof())),
         rotors_(viscous_),
-        turning_(model.robot().drives().by_drive(signs(model))),
-        follows_(model.robot().drives().follows()) {
+        sign_(signs(model)) {
     const auto& robot = model.robot();
     for (int link = 1; link <= robot.joints(); ++link) {
       auto unit = filled<AllJoints>(robot.joints());
       unit(link - 1) = Scalar(1);
-      const JointVector ratio = robot.drives().by_drive(unit);
+      const JointVector ratio = drives_.by_drive(unit);
       for (Eigen::Index k = 0; k < ratio.size(); ++k) {
         viscous_(k) += ratio(k) * ratio(k) * joint_of(source, link - 1).drive.viscous;
         rotors_(k) += ratio(k) * ratio(k) * joint_of(source, link - 1).drive.rotor_inertia;
@@ -65,69 +67,110 @@ class TorqueDeviation {
         mass(i) += body.mass;
       });
     }
+    most_ = weight_ = squares;
     const Scalar gravity = norm(model.gravity());
-    AllJoints most = squares;
     Scalar largest(0);
-    for (Eigen::Index i = most.size() - 1; i >= 0; --i) most(i) = largest = std::max(largest, std::sqrt(squares(i)));
-    most_ = robot.drives().by_drive(signed_like(model, most));
-    weight_ = robot.drives().by_drive(signed_like(
-        model, AllJoints(entrywise(mass, [&](Eigen::Index i) { return gravity * std::sqrt(mass.coeff(i)); }))));
+    Scalar heaviest(0);
+    for (Eigen::Index i = squares.size() - 1; i >= 0; --i) {
+      most_(i) = largest = std::max(largest, std::sqrt(squares(i)));
+      weight_(i) = heaviest = std::max(heaviest, gravity * std::sqrt(mass(i)));
+    }
   }
 
-  /// Deviation of each torque [Nm] or [N]. inertia: M at the start of the part. velocity: StopPlan::velocity().
-  /// seconds: duration of the part [s].
-  [[nodiscard]] JointVector of(const Matrix<N, N, Scalar>& inertia, const Part& part, const JointVector& velocity,
-                               Scalar seconds) const noexcept {
-    const JointVector S = sizes(inertia, part.speed, seconds);
-    const auto most = entrywise(
-        S, [&](Eigen::Index i) { return std::max(std::abs(part.low.coeff(i)), std::abs(part.high.coeff(i))); });
-    const auto sum = [&](const auto& x) noexcept {
-      return sum_over(S, [&](Eigen::Index i) { return S.coeff(i) * x(i); });
-    };
-    const auto turned = [&](const auto& x) noexcept {
-      return sum_over(S, [&](Eigen::Index i) { return turning_.coeff(i) * x(i); });
-    };
-    const auto speeds = [&](Eigen::Index i) noexcept { return part.speed.coeff(i); };
-    const auto accelerations = [&](Eigen::Index i) noexcept { return most.coeff(i); };
-    const auto ranges = [&](Eigen::Index i) noexcept { return part.high.coeff(i) - part.low.coeff(i); };
-    const Scalar w = turned(speeds);
-    Scalar second;  // Factors of S and of the weight.
-    Scalar weight;
-    if (part.line > Scalar(0)) {
-      const Scalar angle = part.line * turned([&](Eigen::Index i) noexcept { return std::abs(velocity.coeff(i)); });
-      weight = angle * angle / Scalar(8);
-      second =
-          weight * (Scalar(12) * sum(accelerations) + Scalar(4) * w * sum(speeds)) + angle / Scalar(2) * sum(ranges);
-    } else {
-      const Scalar a = turned(accelerations);
-      const Scalar eighth = seconds * seconds / Scalar(8);
-      weight = eighth * (w * w + a);
-      second = eighth * ((Scalar(8) * w * w + Scalar(4) * a) * sum(accelerations) +
-                         (Scalar(4) * w * w + Scalar(6) * a) * w * sum(speeds)) +
-               seconds / Scalar(4) * (w * sum(ranges) + turned(ranges) * sum(speeds));
-    }
-    return entrywise(S, [&](Eigen::Index i) {
-      return S.coeff(i) * (second + weight * weight_.coeff(i)) + viscous_.coeff(i) * seconds * most.coeff(i);
+  /// Deviation of each torque [Nm] or [N]. inertia: M in the posture q. start: posture at the start of the part.
+  /// velocity: StopPlan::velocity(). seconds: duration of the part [s].
+  [[nodiscard]] JointVector of(const Matrix<N, N, Scalar>& inertia, const JointVector& q, const JointVector& start,
+                               const Part& part, const JointVector& velocity, Scalar seconds) const noexcept {
+    const FieldNorms<AllJoints> S = sizes(inertia, [&](Eigen::Index i) noexcept {
+      return std::abs(start.coeff(i) - q.coeff(i)) + seconds * part.speed.coeff(i);
     });
+    const bool line = part.line > Scalar(0);
+    const AllJoints a = sums(largest_accelerations(part));
+    const AllJoints v = sums(part.speed);
+    const AllJoints range = sums(entrywise(q, [&](Eigen::Index i) { return part.high.coeff(i) - part.low.coeff(i); }));
+    const AllJoints d = sums(entrywise(
+        q, [&](Eigen::Index i) { return line ? part.line * velocity.coeff(i) : seconds * part.speed.coeff(i); }));
+    const Scalar square = line ? Scalar(0) : seconds * seconds;
+    const Scalar force = S.of(a) + S.of(v, v);
+    const Scalar first = Scalar(6) * S.of(a, d) + Scalar(2) * S.of(v, v, d);
+    const Scalar second =
+        Scalar(6) * S.of(a, d, d) + Scalar(3) * square * S.of(a, a) + S.of(v, v, d, d) + Scalar(4) * S.of(d, range);
+    const AllJoints turned = S.with(d);
+    const AllJoints twice = S.with(d, d);
+    AllJoints deviation = line ? twice : S.with(a);
+    for (Eigen::Index i = 0; i < deviation.size(); ++i) {
+      const Scalar bent = twice.coeff(i) + square * deviation.coeff(i);
+      deviation.coeffRef(i) =
+          (bent * (force + weight_.coeff(i)) + turned.coeff(i) * first + S.S.coeff(i) * second) / Scalar(8);
+    }
+    return by_drive(deviation, [&](Eigen::Index i) noexcept {
+      return seconds * std::max(std::abs(part.low.coeff(i)), std::abs(part.high.coeff(i)));
+    });
+  }
+
+  /// Bounds on the differences of the torques in two states, for the accelerations of a part [Nm] or [N]. inertia: M in
+  /// state x.
+  [[nodiscard]] JointVector between(const Matrix<N, N, Scalar>& inertia, const State<N, Scalar>& x,
+                                    const State<N, Scalar>& y, const Part& part) const noexcept {
+    const auto change = [&](Eigen::Index i) noexcept { return std::abs(y.qd.coeff(i) - x.qd.coeff(i)); };
+    const auto moved = [&](Eigen::Index i) noexcept { return std::abs(y.q.coeff(i) - x.q.coeff(i)); };
+    const FieldNorms<AllJoints> S = sizes(inertia, moved);
+    const AllJoints a = sums(largest_accelerations(part));
+    const AllJoints d = sums(entrywise(x.q, moved));
+    const AllJoints dv = sums(entrywise(x.q, change));
+    const AllJoints v = sums(
+        entrywise(x.q, [&](Eigen::Index i) { return std::max(std::abs(x.qd.coeff(i)), std::abs(y.qd.coeff(i))); }));
+    const Scalar force = S.of(a) + S.of(v, v);
+    const Scalar first = S.of(a, d) + S.of(v, v, d) + Scalar(2) * S.of(v, dv);
+    AllJoints difference = S.with(d);
+    for (Eigen::Index i = 0; i < difference.size(); ++i) {
+      difference.coeffRef(i) = difference.coeff(i) * (force + weight_.coeff(i)) + S.S.coeff(i) * first;
+    }
+    return by_drive(difference, change);
   }
 
  private:
   using AllJoints = Vector<Joints, Scalar>;
 
-  /// S in a part that begins with the inertia matrix M.
-  [[nodiscard]] JointVector sizes(const Matrix<N, N, Scalar>& M, const JointVector& speed,
-                                  Scalar seconds) const noexcept {
-    if (follows_) return most_;
-    JointVector S = most_;
+  /// S within displacements |moved(i)| from a posture with the inertia matrix M.
+  template <typename Moved>
+  [[nodiscard]] FieldNorms<AllJoints> sizes(const Matrix<N, N, Scalar>& M, const Moved& moved) const noexcept {
+    FieldNorms<AllJoints> sizes{most_, most_};
     Scalar growth(0);
-    Scalar largest(0);
-    for (Eigen::Index i = S.size() - 1; i >= 0; --i) {
-      const Scalar s = std::sqrt(std::max(M.coeff(i, i) - rotors_.coeff(i), Scalar(0)));
-      largest = std::max(largest, std::min(s + growth, most_.coeff(i)));
-      growth += seconds * speed.coeff(i) * most_.coeff(i);
-      S.coeffRef(i) = largest;
+    Scalar beyond(0);
+    for (Eigen::Index i = most_.size() - 1; i >= 0; --i) {
+      Scalar& size = sizes.S.coeffRef(i);
+      if (!drives_.follows()) {
+        const Scalar s = std::sqrt(std::max(M.coeff(i, i) - rotors_.coeff(i), Scalar(0)));
+        size = std::max(beyond, std::min(s + growth, size));
+        growth += moved(i) * most_.coeff(i);
+      }
+      sizes.steps.coeffRef(i) = size - beyond;
+      beyond = size;
     }
-    return S;
+    return sizes;
+  }
+
+  [[nodiscard]] static JointVector largest_accelerations(const Part& part) noexcept {
+    return entrywise(
+        part.low, [&](Eigen::Index i) { return std::max(std::abs(part.low.coeff(i)), std::abs(part.high.coeff(i))); });
+  }
+
+  /// Cumulative sums over the joints of the magnitudes of joint rates, from the rates of the drives.
+  [[nodiscard]] AllJoints sums(const JointVector& x) const noexcept {
+    AllJoints sums = drives_.rates(x);
+    Scalar sum(0);
+    for (Eigen::Index i = 0; i < sums.size(); ++i) sums.coeffRef(i) = sum += std::abs(sums.coeff(i));
+    return sums;
+  }
+
+  /// Bounds on the torques of the drives, from bounds on the torques of the joints and on changes of the velocities.
+  template <typename Change>
+  [[nodiscard]] JointVector by_drive(AllJoints& torques, const Change& change) const noexcept {
+    for (Eigen::Index i = 0; i < torques.size(); ++i) torques.coeffRef(i) *= sign_.coeff(i);
+    JointVector result = drives_.by_drive(torques);
+    for (Eigen::Index i = 0; i < result.size(); ++i) result.coeffRef(i) += viscous_.coeff(i) * change(i);
+    return result;
   }
 
   /// Levers of the centre of mass of a link, of all joints [m].
@@ -141,18 +184,14 @@ class TorqueDeviation {
     const auto rates = model.robot().drives().rates(filled<JointVector>(model.dof(), Scalar(1)));
     return entrywise(rates, [&](Eigen::Index i) { return std::copysign(Scalar(1), rates.coeff(i)); });
   }
-  [[nodiscard]] static AllJoints signed_like(const Model& model, const AllJoints& x) noexcept {
-    const AllJoints sign = signs(model);
-    return entrywise(x, [&](Eigen::Index i) { return sign.coeff(i) * x.coeff(i); });
-  }
 
+  Drives<N, Joints, Scalar> drives_;
   Levers<Scalar> levers_;
   JointVector viscous_;  ///< [Nm s/rad]
   JointVector rotors_;   ///< [kg m²]
-  JointVector turning_;  ///< Σ |ratio| over the joints of each drive.
-  JointVector most_;     ///< S in any posture [kg½ m].
-  JointVector weight_;   ///< Gravity times the root of the mass that each drive moves [kg½ m/s²].
-  bool follows_;         ///< Whether joints follow drives.
+  AllJoints sign_;       ///< Signs of the ratios of the joints to their drives.
+  AllJoints most_;       ///< S in any posture [kg½ m].
+  AllJoints weight_;     ///< Gravity times the root of the mass that each joint moves [kg½ m/s²].
 };
 
 }  // namespace fpbm

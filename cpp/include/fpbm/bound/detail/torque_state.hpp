@@ -25,19 +25,29 @@ struct TorqueState {
       for (Eigen::Index i = 0; i < torque.size(); ++i) torque.coeffRef(i) += h.coeff(i);
       return torque;
     }
+    [[nodiscard]] Scalar at(Eigen::Index i, const JointVector& u) const noexcept {
+      return h.coeff(i) + sum_over(u, [&](Eigen::Index j) { return M.coeff(j, i) * u.coeff(j); });
+    }
   };
+
+  static constexpr Scalar kMostKept = Scalar(9);
 
   State<N, Scalar> at;
   std::array<Torque, 2> of;
   std::size_t models = 1;
 
-  /// count: number of models. Call set() before any other function.
+  /// count: number of models. Before set(), no state is equal or near.
   TorqueState(Eigen::Index dof, std::size_t count)
       : at{filled<JointVector>(dof, std::numeric_limits<Scalar>::quiet_NaN()), filled<JointVector>(dof)},
-        models(count) {}
+        models(count) {
+    of.fill({filled<Matrix<N, N, Scalar>>(dof), filled<JointVector>(dof)});
+  }
 
   [[nodiscard]] bool is_at(const State<N, Scalar>& state) const noexcept {
-    return at.q == state.q && at.qd == state.qd;
+    for (Eigen::Index i = 0; i < at.q.size(); ++i) {
+      if (!(at.q.coeff(i) == state.q.coeff(i) && at.qd.coeff(i) == state.qd.coeff(i))) return false;
+    }
+    return true;
   }
 
   /// Evaluates models in a state. Returns whether the state is another than before.
@@ -53,24 +63,34 @@ struct TorqueState {
     return true;
   }
 
-  /// Largest f, at most 1, with |τ_i| + f more_i ≤ most_i for all accelerations from low to high. Negative if |τ_i|
-  /// exceeds most_i.
-  [[nodiscard]] Scalar kept_part(const JointVector& most, const JointVector& low, const JointVector& high,
-                                 const JointVector& more) const noexcept {
-    Scalar part(1);
-    const auto middle = entrywise(low, [&](Eigen::Index i) { return (low.coeff(i) + high.coeff(i)) / Scalar(2); });
+  /// Largest f, at most kMostKept, with |τ_i| + f more_i ≤ most_i for all accelerations of a part, and, if the part
+  /// ends at rest, for u = 0. Negative or NaN if |τ_i| exceeds most_i.
+  template <typename Part>
+  [[nodiscard]] Scalar kept_part(const JointVector& most, const Part& part, const JointVector& more,
+                                 bool rests) const noexcept {
+    Scalar kept(kMostKept);
+    const bool zero = part.pauses || rests;
     for (std::size_t k = 0; k < models; ++k) {
-      const JointVector torque = of[k](middle);
-      for (Eigen::Index i = 0; i < torque.size(); ++i) {
-        const Scalar spread = sum_over(low, [&](Eigen::Index j) {
-          return std::abs(of[k].M.coeff(i, j)) * (high.coeff(j) - low.coeff(j)) / Scalar(2);
-        });
-        const Scalar slack = most.coeff(i) - std::abs(torque.coeff(i)) - spread;
-        if (!(slack >= Scalar(0))) return Scalar(-1);
-        if (more.coeff(i) * part > slack) part = slack / more.coeff(i);
+      JointVector largest =
+          entrywise(most, [&](Eigen::Index i) { return zero ? std::abs(of[k].h.coeff(i)) : Scalar(0); });
+      for (std::size_t c = 0; c < part.corner_count; ++c) {
+        const JointVector torque = of[k](part.corners[c]);
+        for (Eigen::Index i = 0; i < most.size(); ++i) {
+          largest.coeffRef(i) = std::max(largest.coeff(i), std::abs(torque.coeff(i)));
+        }
+      }
+      each_joint(part.alone, [&](Eigen::Index j) noexcept {
+        const Scalar half = (part.high.coeff(j) - part.low.coeff(j)) / Scalar(2);
+        for (Eigen::Index i = 0; i < most.size(); ++i) largest.coeffRef(i) += std::abs(of[k].M.coeff(i, j)) * half;
+      });
+      for (Eigen::Index i = 0; i < most.size(); ++i) {
+        const Scalar slack = most.coeff(i) - largest.coeff(i);
+        if (more.coeff(i) * kept <= slack) continue;
+        kept = slack / more.coeff(i);
+        if (!(kept <= Scalar(kMostKept))) return -std::numeric_limits<Scalar>::infinity();  // Not a number.
       }
     }
-    return part;
+    return kept;
   }
   /// Whether |τ_i| ≤ most_i for the accelerations u.
   [[nodiscard]] bool keeps(const JointVector& most, const JointVector& u) const noexcept {
@@ -81,6 +101,17 @@ struct TorqueState {
       }
     }
     return true;
+  }
+
+  /// Whether a torque is at least more_i beyond most_i for the accelerations u.
+  [[nodiscard]] bool exceeds(const JointVector& most, const JointVector& u, const JointVector& more) const noexcept {
+    for (std::size_t k = 0; k < models; ++k) {
+      const JointVector torque = of[k](u);
+      for (Eigen::Index i = 0; i < torque.size(); ++i) {
+        if (std::abs(torque.coeff(i)) > most.coeff(i) + more.coeff(i)) return true;
+      }
+    }
+    return false;
   }
 
   /// Largest fraction of the accelerations u, at most 1, with which |τ_i| ≤ most_i. 0 if there is none.

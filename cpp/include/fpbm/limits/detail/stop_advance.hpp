@@ -66,9 +66,14 @@ void advance(StopPlan<Level::kAcceleration, N, Scalar>& plan, const Limits<Level
   const Scalar ramp_first = ramps ? Scalar(1) - (plan.k_ + Scalar(1)) / plan.ramp_ticks_ : Scalar(0);
   const Scalar ramp_last = ramps ? Scalar(1) - ramp_end / plan.ramp_ticks_ : Scalar(0);
   const auto brake = plan.profile_.removed_fractions(std::max(plan.k_, ramp_end), end - Scalar(1));
+  const Scalar removed = plan.profile_.removed_fraction(end - Scalar(1));
+  part.alone = plan.stops_alone_;
+  part.pauses = ramps && brakes;  // At the end of the ramp.
+  part.corner_count = part.pauses ? 3 : 2;
   for (Eigen::Index i = 0; i < plan.last_.size(); ++i) {
     if (plan.stops_alone(i)) {
       advance_alone(limits, i, ticks, part);
+      for (auto& corner : part.corners) corner(i) = (part.low(i) + part.high(i)) / Scalar(2);
       continue;
     }
     const Scalar a = plan.last_(i);
@@ -78,13 +83,21 @@ void advance(StopPlan<Level::kAcceleration, N, Scalar>& plan, const Limits<Level
     part.state.q(i) += h * (to.line - from.line) * v + h * h * (to.ramp - from.ramp) * a;
     part.state.qd(i) = after;
     part.speed(i) = std::max({std::abs(before), std::abs(after), ramps && brakes ? std::abs(v) : Scalar(0)});
-    const Scalar none = ramps ? ramp_first * a : -brake.low * v / h;  // An acceleration of the part.
-    const Scalar in_ramp = ramps ? ramp_last * a : none;
-    const Scalar least = brakes ? -brake.low * v / h : none;
-    const Scalar most = brakes ? -brake.high * v / h : none;
-    part.low(i) = std::min({none, in_ramp, least, most});
-    part.high(i) = std::max({none, in_ramp, least, most});
-    part.last(i) = brakes ? -plan.profile_.removed_fraction(end - Scalar(1)) * v / h : in_ramp;
+    auto& corners = part.corners;
+    std::size_t corner = 0;
+    if (ramps) corners[corner++](i) = ramp_first * a;
+    if (ramps && !brakes) corners[corner++](i) = ramp_last * a;
+    if (brakes) {
+      corners[corner++](i) = -brake.low * v / h;
+      corners[corner++](i) = -brake.high * v / h;
+    }
+    part.low(i) = std::min(corners[0](i), corners[1](i));
+    part.high(i) = std::max(corners[0](i), corners[1](i));
+    if (part.pauses) {
+      part.low(i) = std::min({part.low(i), corners[2](i), Scalar(0)});
+      part.high(i) = std::max({part.high(i), corners[2](i), Scalar(0)});
+    }
+    part.last(i) = brakes ? -removed * v / h : ramp_last * a;
   }
   plan.k_ = end;
   part.line = ramps || plan.stops_alone_ != 0 ? Scalar(0) : h * (to.line - from.line);

@@ -33,6 +33,14 @@ struct StopProfile {
     return {Scalar(0), ramp, std::max(Scalar(2) * ramp, ramp + ceil(speed / (h * deceleration))) - Scalar(1)};
   }
 
+  /// Number of ticks in which an acceleration changes to zero by at most `change` in each tick. Accelerations at the
+  /// bound on jerk are multiples of `change` up to the round-off error of a difference of velocities, about 300 ε for
+  /// 2 rad/s, 1 ms and 7500 rad/s³. Because of the tolerance of 512 ε, the round-off error does not add a tick.
+  [[nodiscard]] static Scalar ramp_ticks(Scalar acceleration, Scalar change) noexcept {
+    constexpr Scalar kRoundOff = Scalar(512) * std::numeric_limits<Scalar>::epsilon();
+    return std::ceil((Scalar(1) - kRoundOff) * (acceleration / change));
+  }
+
   /// Profile with which the joints of both profiles stop. No joint has a larger deceleration than in its own profile.
   [[nodiscard]] StopProfile together(const StopProfile& other) const noexcept {
     const Scalar longest = std::max(ramp, other.ramp);

@@ -13,7 +13,8 @@ template <typename TrackerState>
   using PlannedStop = std::decay_t<decltype(state.stop)>;
   const auto& from = state.tick.joints;
   const typename TrackerState::JointVector last = (next.qd - from.qd) / state.dt();
-  for (Scalar fraction(1); fraction > Scalar(0); fraction = state.bounds.slower_stop(fraction)) {
+  const Scalar first = state.stop.plan.next_fraction();
+  for (Scalar fraction = first; fraction > Scalar(0); fraction = state.bounds.slower_stop(fraction)) {
     const auto stop = PlannedStop::after(state.limits(), from, next, last, fraction);
     if (!state.bounds.accepts(state.limits(), from, stop)) continue;
     state.stop = stop;
