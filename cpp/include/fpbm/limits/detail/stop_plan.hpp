@@ -37,8 +37,9 @@ class StopPlan {
     const Scalar h = limits.tick();
     const auto& bounds = limits.bounds();
     for (Eigen::Index i = 0; i < last.size(); ++i) {
-      if (limits.bounds_jerk(i))
+      if (limits.bounds_jerk(i)) {
         ramp_ticks_ = std::max(ramp_ticks_, StopProfile<Scalar>::ramp_ticks(std::abs(last(i)), h * bounds.jerk(i)));
+      }
     }
     for (Eigen::Index i = 0; i < last.size(); ++i) {
       velocity_(i) += h * ramp_velocity_change() * last(i);
