@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "fpbm/limits/detail/stop_advance.hpp"
 #include "support/random_tree.hpp"
@@ -15,7 +14,6 @@ namespace fpbm::test::torque_deviation_laws {
 namespace {
 
 constexpr int kOpen = Eigen::Dynamic;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 using Joints = Vector<kOpen>;
 using MotionLimits = Limits<Level::kAcceleration, kOpen>;
 using Plan = StopPlan<Level::kAcceleration, kOpen>;
