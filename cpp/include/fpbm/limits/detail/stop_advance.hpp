@@ -68,8 +68,9 @@ void advance(StopPlan<Level::kAcceleration, N, Scalar>& plan, const Limits<Level
   const auto brake = plan.profile_.removed_fractions(std::max(plan.k_, ramp_end), end - Scalar(1));
   const Scalar removed = plan.profile_.removed_fraction(end - Scalar(1));
   part.alone = plan.stops_alone_;
-  part.pauses = ramps && brakes;  // At the end of the ramp.
-  part.corner_count = part.pauses ? 3 : 2;
+  const bool pauses = ramps && brakes;  // At the end of the ramp.
+  part.pauses = pauses && part.alone == 0;
+  part.corner_count = pauses ? (part.pauses ? 3 : 4) : 2;
   for (Eigen::Index i = 0; i < plan.last_.size(); ++i) {
     if (plan.stops_alone(i)) {
       advance_alone(limits, i, ticks, part);
@@ -93,7 +94,8 @@ void advance(StopPlan<Level::kAcceleration, N, Scalar>& plan, const Limits<Level
     }
     part.low(i) = std::min(corners[0](i), corners[1](i));
     part.high(i) = std::max(corners[0](i), corners[1](i));
-    if (part.pauses) {
+    if (pauses) {
+      corners[3](i) = Scalar(0);
       part.low(i) = std::min({part.low(i), corners[2](i), Scalar(0)});
       part.high(i) = std::max({part.high(i), corners[2](i), Scalar(0)});
     }

@@ -16,7 +16,7 @@ struct StopPart {
   Vector<N, Scalar> speed;  ///< Largest speeds.
   /// All accelerations are convex combinations of the first `corner_count` corners, and of 0 if `pauses`, apart from
   /// joints in `alone`, which are at the middle of `low` and `high` in the corners.
-  std::array<Vector<N, Scalar>, 3> corners;
+  std::array<Vector<N, Scalar>, 4> corners;
   std::size_t corner_count = 0;
   bool pauses = false;
   JointBits alone = 0;  ///< Bits of joints that follow their own shortest stops.
@@ -27,7 +27,8 @@ struct StopPart {
   /// Before the first part, of a state that is reached with the accelerations `before`. Only `state` and `last` are
   /// set.
   StopPart(const State<N, Scalar>& from, const Vector<N, Scalar>& before) : state(from), last(before) {
-    for (auto* each : {&low, &high, &speed, &corners[0], &corners[1], &corners[2]}) each->resize(before.size());
+    for (auto* each : {&low, &high, &speed, &corners[0], &corners[1], &corners[2], &corners[3]})
+      each->resize(before.size());
   }
 };
 
