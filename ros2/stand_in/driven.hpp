@@ -27,6 +27,8 @@ class Driven {
   using CallbackReturn = controller_interface::CallbackReturn;
   using Overrides = std::map<std::string, rclcpp::ParameterValue>;
 
+  virtual ~Driven() = default;
+
   /// start: posture at rest. Resets the parameters to their defaults.
   Driven(const std::string& robot_description, const JointLimits& limits, const Joints& start)
       : description{"targets", robot_description, 0, 0, {}}, q(start), limits_(limits) {
@@ -45,9 +47,9 @@ class Driven {
   [[nodiscard]] bool activate() {
     good(state == Lifecycle::kInactive, "activated from another state than inactive");
     std::vector<hardware_interface::LoanedCommandInterface> commands;
-    for (std::size_t i = 0; i < kDof; ++i) commands.emplace_back(command[i], command_locks[i]);
-    if (parameters.command_interfaces.size() == 2) {
-      for (std::size_t i = 0; i < kDof; ++i) commands.emplace_back(velocity[i], command_locks[kDof + i]);
+    for (const std::string& type : parameters.command_interfaces) {
+      Joints& values = type == "position" ? command : type == "velocity" ? velocity : torque;
+      for (std::size_t i = 0; i < kDof; ++i) commands.emplace_back(values[i], command_locks[commands.size()]);
     }
     std::vector<hardware_interface::LoanedStateInterface> states;
     for (std::size_t i = 0; i < kDof; ++i) states.emplace_back(q[i], state_locks[i]);
@@ -70,8 +72,8 @@ class Driven {
     controller_->release_interfaces();
   }
 
-  /// A tick of the manager and of the hardware. Unless the arm is held, its joints follow the command from `lag` ticks
-  /// ago.
+  /// A tick of the manager and of the hardware. By default, unless the arm is held, its joints follow the command from
+  /// `lag` ticks ago.
   void tick() { tick(1.0 / rate); }
   /// A tick `period` [s] after the last tick.
   void tick(double period) {
@@ -85,14 +87,7 @@ class Driven {
       if (first_ && own < rate) seconds_since_call_ = 1.0 / own;
       if (own >= rate || first_ || error <= later) call(seconds_since_call_);
     }
-    past_.push_back(command);
-    if (past_.size() > lag + 1) past_.pop_front();
-    for (std::size_t i = 0; i < kDof && !held; ++i) {
-      if (std::isnan(past_.front()[i])) continue;
-      const double next = past_.front()[i] + offset;
-      measured_velocity[i] = (next - q[i]) / period;
-      q[i] = next;
-    }
+    move(period);
   }
   void tick(int count) {
     for (int i = 0; i < count; ++i) tick();
@@ -136,8 +131,9 @@ class Driven {
   Joints q;
   Joints command{};
   Joints velocity{};
+  Joints torque{};
   Joints measured_velocity{};
-  std::array<Lock, 2 * kDof> command_locks{};
+  std::array<Lock, 3 * kDof> command_locks{};
   std::array<Lock, 2 * kDof> state_locks{};
   double offset = 0.0;  ///< Offset of each joint from its command [rad].
   std::size_t lag = 0;  ///< [ticks]
@@ -148,6 +144,20 @@ class Driven {
   double excess = -1e9;               ///< Excess over a bound on position or velocity [rad, rad/s].
   double acceleration_excess = -1.0;  ///< Relative to the bound.
   double jerk_excess = -1.0;          ///< Relative to the bound.
+  double effort_ratio = 0.0;          ///< Largest torque relative to the effort; infinite if a torque is NaN.
+
+ protected:
+  /// Moves the joints for `period` [s].
+  virtual void move(double period) {
+    past_.push_back(command);
+    if (past_.size() > lag + 1) past_.pop_front();
+    for (std::size_t i = 0; i < kDof && !held; ++i) {
+      if (std::isnan(past_.front()[i])) continue;
+      const double next = past_.front()[i] + offset;
+      measured_velocity[i] = (next - q[i]) / period;
+      q[i] = next;
+    }
+  }
 
  private:
   static void good(bool is_good, const char* what) {
@@ -179,6 +189,9 @@ class Driven {
     for (std::size_t i = 0; i < kDof; ++i) {
       if ((refused || refused_before_) && command[i] == last_[i]) continue;
       const auto joint = limits_.joint(static_cast<Eigen::Index>(i));
+      effort_ratio = std::max(effort_ratio, std::abs(torque[i]) / joint.effort);
+      if (std::isnan(torque[i])) effort_ratio = std::numeric_limits<double>::infinity();
+      if (std::isnan(command[i])) continue;  // Commands without positions.
       const double v = (command[i] - last_[i]) / seconds;
       const double a = (v - last_velocity_[i]) / seconds;
       const double j = (a - last_acceleration_[i]) / seconds;

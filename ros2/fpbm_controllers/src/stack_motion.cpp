@@ -131,6 +131,8 @@ class StackMotion final : public Motion {
 
   [[nodiscard]] const fpbm::State<kDof>& state() const noexcept override { return tracker_->state(); }
 
+  [[nodiscard]] const Joints& acceleration() const noexcept override { return tracker_->acceleration(); }
+
   void locate(Report& report) const noexcept override {
     const Stack::Point at = tracker_->tip();
     for (const Part& part : parts_) {

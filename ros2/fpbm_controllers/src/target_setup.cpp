@@ -28,16 +28,6 @@ namespace {
   return result;
 }
 
-[[nodiscard]] fpbm::Vector<Eigen::Dynamic> vector_of(const char* name, const std::vector<double>& values,
-                                                     Eigen::Index dof) {
-  const Eigen::Map<const Eigen::VectorXd> vector(values.data(), static_cast<Eigen::Index>(values.size()));
-  if (vector.size() != dof || !vector.allFinite()) {
-    throw std::invalid_argument(std::string(name) + ": has " + std::to_string(values.size()) + " entries: must be " +
-                                std::to_string(dof) + " finite numbers, one for each joint");
-  }
-  return vector;
-}
-
 /// Throws if the joints of the parameters are not the driven joints of the tree.
 void require_joints(const std::vector<std::string>& given, const fpbm::Tree<>& tree) {
   std::vector<std::string> driven;
@@ -53,6 +43,17 @@ void require_joints(const std::vector<std::string>& given, const fpbm::Tree<>& t
   throw std::invalid_argument("joints: joint " + std::to_string(ours - given.begin() + 1) + " is " +
                               text(ours, given.end()) + ", and " + text(theirs, driven.end()) +
                               " in robot_description between base_frame and the frames: give [" + list + "]");
+}
+
+/// Throws unless velocities are only with positions, and all are in the order position, velocity, effort.
+void require_commands(const std::vector<std::string>& given) {
+  using List = std::vector<std::string>;
+  const List accepted[] = {
+      {"position"}, {"position", "velocity"}, {"effort"}, {"position", "effort"}, {"position", "velocity", "effort"}};
+  if (std::find(std::begin(accepted), std::end(accepted), given) != std::end(accepted)) return;
+  throw std::invalid_argument(
+      "command_interfaces: must be [position], [position, velocity], or one of these with effort as the last, or "
+      "[effort]: correct the list");
 }
 
 /// Whether a link is the end of an arm, because the link carries no joint of the tree.
@@ -75,10 +76,9 @@ void TargetController::read_parameters() {
       throw std::invalid_argument(std::string(name) + ": is " + std::to_string(value) + ": must be finite");
     }
   }
-  if (params_.command_interfaces.empty() || params_.command_interfaces[0] != "position" ||
-      params_.state_interfaces.empty() || params_.state_interfaces[0] != "position") {
-    throw std::invalid_argument(
-        "command_interfaces, state_interfaces: one list does not begin with position: put position first");
+  require_commands(params_.command_interfaces);
+  if (params_.state_interfaces.empty() || params_.state_interfaces[0] != "position") {
+    throw std::invalid_argument("state_interfaces: does not begin with position: put position first");
   }
   require_rate();
 
@@ -103,6 +103,18 @@ void TargetController::read_parameters() {
                                     target.angular_velocity, target.angular_acceleration, target.angular_jerk};
   const MotionSettings settings{tree, motion_tasks(tree), scheme(robot_->dof()), options, *limits_, bounds, filter};
   motion_ = is_tip() && robot_->dof() >= fpbm::Pose::kRows ? make_tip_motion(settings) : make_stack_motion(settings);
+  torque_.reset();
+  if (params_.command_interfaces.back() == "effort") torque_.emplace(computed_torque(tree));
+}
+
+TargetController::Joints TargetController::joint_numbers(const char* name, const std::vector<double>& values,
+                                                         Eigen::Index dof) {
+  const Eigen::Map<const Eigen::VectorXd> vector(values.data(), static_cast<Eigen::Index>(values.size()));
+  if (vector.size() != dof || !vector.allFinite()) {
+    throw std::invalid_argument(std::string(name) + ": has " + std::to_string(values.size()) + " entries: must be " +
+                                std::to_string(dof) + " finite numbers, one for each joint");
+  }
+  return vector;
 }
 
 fpbm::Tree<> TargetController::described() const {
@@ -166,8 +178,8 @@ std::vector<MotionTask> TargetController::motion_tasks(const fpbm::Tree<>& tree)
 MotionScheme TargetController::scheme(Eigen::Index dof) const {
   const auto& given = params_.scheme;
   MotionScheme scheme{given.alpha, Joints::Ones(dof), given.null_damping, given.rest_stiffness, std::nullopt};
-  if (!given.weights.empty()) scheme.weights = vector_of("scheme.weights", given.weights, dof);
-  if (!given.rest_posture.empty()) scheme.rest_posture = vector_of("scheme.rest_posture", given.rest_posture, dof);
+  if (!given.weights.empty()) scheme.weights = joint_numbers("scheme.weights", given.weights, dof);
+  if (!given.rest_posture.empty()) scheme.rest_posture = joint_numbers("scheme.rest_posture", given.rest_posture, dof);
   return scheme;
 }
 
@@ -222,6 +234,7 @@ TargetController::JointLimits TargetController::limits(const fpbm::Tree<>& tree)
       controlled.acceleration(i) = std::min(controlled.acceleration(i), joint.max_deceleration);
     }
     if (joint.has_jerk_limits) controlled.jerk(i) = joint.max_jerk;
+    if (joint.has_effort_limits && joint.max_effort > 0.0) controlled.effort(i) = joint.max_effort;
   }
   result.narrow(controlled, "ros2_control");
 #endif
@@ -230,13 +243,14 @@ TargetController::JointLimits TargetController::limits(const fpbm::Tree<>& tree)
 
   JointLimits own = JointLimits::none(dof);
   const auto take = [&](const char* name, const std::vector<double>& values, Joints& bound) {
-    if (!values.empty()) bound = vector_of(name, values, dof);
+    if (!values.empty()) bound = joint_numbers(name, values, dof);
   };
   take("limits.lower", given.lower, own.lower);
   take("limits.upper", given.upper, own.upper);
   take("limits.velocity", given.velocity, own.velocity);
   take("limits.acceleration", given.acceleration, own.acceleration);
   take("limits.jerk", given.jerk, own.jerk);
+  take("limits.effort", given.effort, own.effort);
   result.narrow(own, "limits");
 
   for (Eigen::Index i = 0; i < dof; ++i) {

@@ -55,6 +55,9 @@ void log_events(const Report& report, Exchange& exchange, const rclcpp::Logger& 
     RCLCPP_WARN(logger, "%s ticks with an interface that another thread had locked",
                 std::to_string(report.missed - before.missed).c_str());
   }
+  if (report.limited > 0 && before.limited == 0) {
+    RCLCPP_WARN(logger, "%s", limited_message(report, exchange.joints).c_str());
+  }
   exchange.logged = report;
 }
 

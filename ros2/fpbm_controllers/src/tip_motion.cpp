@@ -59,6 +59,8 @@ class TipMotion final : public Motion {
 
   [[nodiscard]] const fpbm::State<kDof>& state() const noexcept override { return tracker_->state(); }
 
+  [[nodiscard]] const Joints& acceleration() const noexcept override { return tracker_->acceleration(); }
+
   void locate(Report& report) const noexcept override { report.tasks[0].at = tracker_->tip(); }
 
  private:

@@ -10,11 +10,13 @@ struct JointLimits {
   double max_acceleration = 0.0;
   double max_deceleration = 0.0;
   double max_jerk = 0.0;
+  double max_effort = 0.0;
   bool has_position_limits = false;
   bool has_velocity_limits = false;
   bool has_acceleration_limits = false;
   bool has_deceleration_limits = false;
   bool has_jerk_limits = false;
+  bool has_effort_limits = false;
 };
 
 }  // namespace joint_limits

@@ -83,6 +83,8 @@ class Motion {
 
   /// Joint commands.
   [[nodiscard]] virtual const fpbm::State<Eigen::Dynamic>& state() const noexcept = 0;
+  /// Acceleration of the last tick.
+  [[nodiscard]] virtual const Joints& acceleration() const noexcept = 0;
   /// Sets the frame of each task in the commanded posture.
   virtual void locate(Report& report) const noexcept = 0;
 };

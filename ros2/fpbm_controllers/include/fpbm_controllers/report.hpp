@@ -36,6 +36,8 @@ struct Report {
   double following_error = 0.0;  ///< Largest of all joints; after a fault, the value at the fault [rad].
   std::uint64_t missed = 0;      ///< Ticks in which another thread had locked an interface.
   std::uint64_t early = 0;       ///< Calls that came too soon to be ticks.
+  std::uint64_t limited = 0;     ///< Ticks in which a torque was limited to its bound.
+  std::size_t limited_joint = 0;
   rclcpp::Time time = rclcpp::Time();
   std::array<TaskReport, kTasks> tasks;
 };
@@ -48,10 +50,18 @@ struct Report {
     case Fault::kNone: break;
     case Fault::kFollowing:
       return joint + std::to_string(report.following_error) + " rad from its command, beyond following_error" + advice;
-    case Fault::kUnreadable: return joint + "its position is not a number" + advice;
+    case Fault::kUnreadable: return joint + "its position or velocity is not a number" + advice;
     case Fault::kLocked: return joint + "its command interface stays locked by another thread" + advice;
   }
   return "";
+}
+
+/// Description of a torque at its bound.
+[[nodiscard]] inline std::string limited_message(const Report& report, const std::vector<std::string>& joints) {
+  return "joint '" + joints.at(report.limited_joint) +
+         "': its torque is limited to its effort, so that the arm follows its command less closely. Reduce the "
+         "payload, "
+         "the bounds on acceleration or the gains.";
 }
 
 /// Suffix of messages with the name of a task; empty for a single task, which has no name.
@@ -75,6 +85,10 @@ struct Report {
     if (well && report.missed > before.missed) {
       message.level = Message::WARN;
       message.message = "interfaces are locked by another thread: the arm waits";
+    }
+    if (well && report.limited > before.limited) {
+      message.level = Message::WARN;
+      message.message = limited_message(report, joints);
     }
     for (std::size_t k = tasks.size(); well && k-- > 0;) {
       if (report.tasks[k].rejected <= before.tasks[k].rejected) continue;
@@ -105,6 +119,7 @@ struct Report {
   add("ticks with a locked interface", std::to_string(report.missed));
   add("calls that came too soon", std::to_string(report.early));
   add("speed", std::to_string(report.speed));
+  add("ticks with a limited torque", std::to_string(report.limited));
   return message;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <fpbm/limits/limits.hpp>
 #include <fpbm/model/robot.hpp>
+#include <fpbm_controllers/computed_torque.hpp>
 #include <fpbm_controllers/motion.hpp>
 #include <fpbm_controllers/pace.hpp>
 #include <fpbm_controllers/report.hpp>
@@ -22,6 +23,7 @@ namespace fpbm_controllers {
 /// every tick. The targets are messages that arrive at any rate.
 ///
 /// A tick continues from the last command, never from the measured posture, which is only compared with the command.
+/// With the command interface effort, the drives get the torques of the command (ComputedTorque).
 class TargetController : public controller_interface::ControllerInterface {
  public:
   controller_interface::CallbackReturn on_init() override;
@@ -57,22 +59,34 @@ class TargetController : public controller_interface::ControllerInterface {
   [[nodiscard]] JointLimits limits(const fpbm::Tree<>& tree) const;
   /// The limits of the preset, for each arm of a tree. Throws std::invalid_argument if an arm is not the preset.
   [[nodiscard]] JointLimits preset_limits(const fpbm::Tree<>& tree) const;
+  /// The torques of a tree from described(), with the inertias of robot_description.
+  [[nodiscard]] ComputedTorque computed_torque(fpbm::Tree<> tree) const;
+  /// A list of a parameter as a vector. Throws std::invalid_argument unless the list has a finite number for each
+  /// joint.
+  [[nodiscard]] static Joints joint_numbers(const char* name, const std::vector<double>& values, Eigen::Index dof);
+  /// Whether the commands contain positions, and not only torques.
+  [[nodiscard]] bool has_positions() const noexcept { return params_.command_interfaces[0] == "position"; }
   void close();
 
   /// Throws std::runtime_error, which names the joint, if an interface cannot be read or the arm moves.
   [[nodiscard]] Joints start();
 
+  /// Whether torques depend on the measured state.
+  [[nodiscard]] bool has_feedback() const noexcept { return torque_ && torque_->has_feedback(); }
   void take_messages() noexcept;
-  /// Reads the joints' positions: the first joint that cannot be read keeps its last reading, and its number is
-  /// returned.
+  /// Reads the joints' positions, and for the feedback of torques the velocities. A joint that cannot be read keeps its
+  /// last reading. Returns the number of the first joint that cannot be read.
   [[nodiscard]] std::optional<std::size_t> measure();
   /// Difference of two positions of joint i; for a continuous joint, difference of angles, because drivers wrap angles.
   [[nodiscard]] double difference(Eigen::Index i, double a, double b) const noexcept;
   /// Stops the arm if the following error of a joint is too large.
   void compare();
   void stop(Fault fault, std::size_t joint) noexcept;
+  /// Sets the torques of a tick. command: at the start of the tick. A position or velocity without a reading has no
+  /// feedback.
+  void set_torques(const fpbm::State<kDof>& command) noexcept;
   /// Writes the commands. Returns a joint whose command interface is locked.
-  [[nodiscard]] std::optional<std::size_t> command(const Joints& q, const Joints& qd);
+  [[nodiscard]] std::optional<std::size_t> command(const Joints& q, const Joints& qd, const Joints& torque);
 
   static constexpr int kLongestLock = 5;  ///< Ticks that the arm waits for a locked interface before it stops.
 
@@ -87,10 +101,14 @@ class TargetController : public controller_interface::ControllerInterface {
 
   // Used only by the loop of an active controller.
   std::unique_ptr<Motion> motion_;
+  std::optional<ComputedTorque> torque_;  ///< None without the command interface effort.
   Pace pace_;
   std::array<std::uint64_t, Report::kTasks> seen_{};  ///< Target::count of each task's newest target.
   int locked_for_ = 0;                                ///< Ticks since all joints have taken a command.
   Joints measured_;
+  Joints measured_velocity_;              ///< Zero without feedback of torques.
+  fpbm::JointBits unread_positions_ = 0;  ///< Joints whose positions could not be read in this tick.
+  fpbm::JointBits unread_velocities_ = 0;
   Report report_;
 };
 
