@@ -9,8 +9,10 @@
 #include <deque>
 #include <fpbm/model/joint.hpp>
 #include <fpbm_controllers/target_controller_parameters.hpp>
+#include <joint_limits/joint_limits.hpp>
 #include <limits>
 #include <stdexcept>
+#include <vector>
 
 namespace stand_in {
 
@@ -31,7 +33,7 @@ class Driven {
 
   /// start: posture at rest. Resets the parameters to their defaults.
   Driven(const std::string& robot_description, const JointLimits& limits, const Joints& start)
-      : description{"targets", robot_description, 0, 0, {}}, q(start), limits_(limits) {
+      : description{"targets", robot_description, 0, 0}, q(start), limits_(limits) {
     parameters = {};
     command.fill(std::numeric_limits<double>::quiet_NaN());  // Like hardware before the first command.
   }
@@ -87,6 +89,7 @@ class Driven {
       if (first_ && own < rate) seconds_since_call_ = 1.0 / own;
       if (own >= rate || first_ || error <= later) call(seconds_since_call_);
     }
+    if (state == Lifecycle::kActive && !soft_limits.empty()) limit_softly(period);
     move(period);
   }
   void tick(int count) {
@@ -139,6 +142,9 @@ class Driven {
   std::size_t lag = 0;  ///< [ticks]
   bool held = false;    ///< Whether a person holds the arm.
   bool watched = true;
+  /// Soft limits that the manager enforces on positions; empty: the manager enforces none.
+  std::vector<joint_limits::SoftJointLimits> soft_limits;
+  int enforced = 0;  ///< Number of ticks in which the manager changed a position.
   std::int64_t calls = 0;
   long allocated = 0;
   double excess = -1e9;               ///< Excess over a bound on position or velocity [rad, rad/s].
@@ -149,7 +155,7 @@ class Driven {
  protected:
   /// Moves the joints for `period` [s].
   virtual void move(double period) {
-    past_.push_back(command);
+    past_.push_back(soft_limits.empty() ? command : limited_);
     if (past_.size() > lag + 1) past_.pop_front();
     for (std::size_t i = 0; i < kDof && !held; ++i) {
       if (std::isnan(past_.front()[i])) continue;
@@ -160,6 +166,20 @@ class Driven {
   }
 
  private:
+  /// The soft limiter of ros2_control 6.8 for positions.
+  void limit_softly(double period) {
+    bool changed = false;
+    for (std::size_t i = 0; i < kDof; ++i) {
+      const auto& soft = soft_limits[i];
+      const double before = std::isnan(limited_[i]) ? q[i] : limited_[i];
+      const double most = limits_.velocity(static_cast<Eigen::Index>(i));
+      const double low = std::clamp(-soft.k_position * (before - soft.min_position), -most, most);
+      const double high = std::clamp(-soft.k_position * (before - soft.max_position), -most, most);
+      limited_[i] = std::clamp(command[i], before + low * period, before + high * period);
+      changed = changed || std::abs(limited_[i] - command[i]) > 1e-9;
+    }
+    enforced += changed ? 1 : 0;
+  }
   static void good(bool is_good, const char* what) {
     if (!is_good) throw std::runtime_error(what);
   }
@@ -213,6 +233,11 @@ class Driven {
   JointLimits limits_;
   std::deque<Joints> past_;
   Joints last_{};
+  Joints limited_ = [] {
+    Joints none;
+    none.fill(std::numeric_limits<double>::quiet_NaN());
+    return none;
+  }();
   Joints last_velocity_{};
   Joints last_acceleration_{};
   bool refused_before_ = false;

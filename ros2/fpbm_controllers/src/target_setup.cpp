@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <fpbm/model/presets.hpp>
+#include <hardware_interface/component_parser.hpp>
 #include <stdexcept>
 
 #include "fpbm_controllers/description.hpp"
-#include "fpbm_controllers/sourced_limits.hpp"
 #include "fpbm_controllers/target_controller.hpp"
 
 namespace fpbm_controllers {
@@ -215,29 +215,35 @@ TargetController::JointLimits TargetController::preset_limits(const fpbm::Tree<>
   return limits;
 }
 
+/// The tags are read from robot_description, because the controller manager gives the limits of the tags only if the
+/// manager enforces limits.
+void TargetController::narrow_by_tags(SourcedLimits& limits) const {
+  JointLimits hard = JointLimits::none(robot_->dof());
+  for (const auto& hardware : hardware_interface::parse_control_resources_from_urdf(get_robot_description())) {
+    for (Eigen::Index i = 0; i < robot_->dof(); ++i) {
+      const auto found = hardware.limits.find(params_.joints[static_cast<std::size_t>(i)]);
+      if (found == hardware.limits.end()) continue;
+      const auto& joint = found->second;
+      const auto take = [](bool given, double value, double& bound) {
+        if (given && value > 0.0) bound = std::min(bound, value);  // 0: not given in the URDF.
+      };
+      if (joint.has_position_limits) hard.lower(i) = std::max(hard.lower(i), joint.min_position);
+      if (joint.has_position_limits) hard.upper(i) = std::min(hard.upper(i), joint.max_position);
+      take(joint.has_velocity_limits, joint.max_velocity, hard.velocity(i));
+      take(joint.has_acceleration_limits, joint.max_acceleration, hard.acceleration(i));
+      take(joint.has_deceleration_limits, joint.max_deceleration, hard.acceleration(i));
+      take(joint.has_jerk_limits, joint.max_jerk, hard.jerk(i));
+      take(joint.has_effort_limits, joint.max_effort, hard.effort(i));
+    }
+  }
+  limits.narrow(hard, "ros2_control");
+}
+
 TargetController::JointLimits TargetController::limits(const fpbm::Tree<>& tree) const {
   const Eigen::Index dof = robot_->dof();
   const auto& given = params_.limits;
   SourcedLimits result(robot_->limits(), "robot_description");
-
-#if __has_include(<controller_interface/controller_interface_params.hpp>)  // Available from ros2_control 4.38 on.
-  JointLimits controlled = JointLimits::none(dof);
-  for (Eigen::Index i = 0; i < dof; ++i) {
-    const auto found = get_hard_joint_limits().find(params_.joints[static_cast<std::size_t>(i)]);
-    if (found == get_hard_joint_limits().end()) continue;
-    const auto& joint = found->second;
-    if (joint.has_position_limits) controlled.lower(i) = joint.min_position;
-    if (joint.has_position_limits) controlled.upper(i) = joint.max_position;
-    if (joint.has_velocity_limits) controlled.velocity(i) = joint.max_velocity;
-    if (joint.has_acceleration_limits) controlled.acceleration(i) = joint.max_acceleration;
-    if (joint.has_deceleration_limits) {
-      controlled.acceleration(i) = std::min(controlled.acceleration(i), joint.max_deceleration);
-    }
-    if (joint.has_jerk_limits) controlled.jerk(i) = joint.max_jerk;
-    if (joint.has_effort_limits && joint.max_effort > 0.0) controlled.effort(i) = joint.max_effort;
-  }
-  result.narrow(controlled, "ros2_control");
-#endif
+  narrow_by_tags(result);
 
   if (!params_.arm.empty()) result.narrow(preset_limits(tree), "preset");
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 // Stands in for ros2_control's header of this name.
 namespace joint_limits {
 
@@ -17,6 +19,12 @@ struct JointLimits {
   bool has_deceleration_limits = false;
   bool has_jerk_limits = false;
   bool has_effort_limits = false;
+};
+
+struct SoftJointLimits {
+  double min_position = std::numeric_limits<double>::quiet_NaN();
+  double max_position = std::numeric_limits<double>::quiet_NaN();
+  double k_position = std::numeric_limits<double>::quiet_NaN();
 };
 
 }  // namespace joint_limits

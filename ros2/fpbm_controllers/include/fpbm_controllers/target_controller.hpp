@@ -9,6 +9,7 @@
 #include <fpbm_controllers/motion.hpp>
 #include <fpbm_controllers/pace.hpp>
 #include <fpbm_controllers/report.hpp>
+#include <fpbm_controllers/sourced_limits.hpp>
 #include <fpbm_controllers/target_controller_parameters.hpp>
 #include <fpbm_controllers/target_topics.hpp>
 #include <fpbm_controllers/task_settings.hpp>
@@ -57,6 +58,8 @@ class TargetController : public controller_interface::ControllerInterface {
   [[nodiscard]] MotionScheme scheme(Eigen::Index dof) const;
   /// The narrowest limits of the robot, ros2_control, the preset and the parameters; the limits are logged.
   [[nodiscard]] JointLimits limits(const fpbm::Tree<>& tree) const;
+  /// Applies the limits of the ros2_control tags in robot_description.
+  void narrow_by_tags(SourcedLimits& limits) const;
   /// The limits of the preset, for each arm of a tree. Throws std::invalid_argument if an arm is not the preset.
   [[nodiscard]] JointLimits preset_limits(const fpbm::Tree<>& tree) const;
   /// The torques of a tree from described(), with the inertias of robot_description.
