@@ -239,6 +239,27 @@ void TargetController::narrow_by_tags(SourcedLimits& limits) const {
   limits.narrow(hard, "ros2_control");
 }
 
+/// If the controller manager enforces soft limits, the manager changes positions whose velocity v toward a soft limit
+/// at the distance d exceeds k d. The braking envelope −a/2k + √(2 a d) is at most k d, with equality at d = a/2k².
+void TargetController::narrow_softly(SourcedLimits& limits) const {
+  JointLimits soft = JointLimits::none(robot_->dof());
+  for (const auto& hardware : hardware_interface::parse_control_resources_from_urdf(get_robot_description())) {
+    for (Eigen::Index i = 0; i < robot_->dof(); ++i) {
+      const auto found = hardware.soft_limits.find(params_.joints[static_cast<std::size_t>(i)]);
+      if (found == hardware.soft_limits.end()) continue;
+      const auto& [lower, upper, k] = found->second;
+      if (!(lower < upper)) continue;  // Both are 0 if they are not given in the URDF.
+      soft.lower(i) = lower;
+      soft.upper(i) = upper;
+      if (!(k > 0.0)) continue;
+      const JointLimits& others = limits.limits();
+      soft.deceleration(i) = std::min(others.deceleration(i), others.acceleration(i));
+      soft.velocity_offset(i) = std::max(others.velocity_offset(i), soft.deceleration(i) / (2.0 * k));
+    }
+  }
+  limits.narrow(soft, "safety_controller");
+}
+
 TargetController::JointLimits TargetController::limits(const fpbm::Tree<>& tree) const {
   const Eigen::Index dof = robot_->dof();
   const auto& given = params_.limits;
@@ -258,6 +279,7 @@ TargetController::JointLimits TargetController::limits(const fpbm::Tree<>& tree)
   take("limits.jerk", given.jerk, own.jerk);
   take("limits.effort", given.effort, own.effort);
   result.narrow(own, "limits");
+  narrow_softly(result);
 
   for (Eigen::Index i = 0; i < dof; ++i) {
     const std::string& joint = params_.joints[static_cast<std::size_t>(i)];

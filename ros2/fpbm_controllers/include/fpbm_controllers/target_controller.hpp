@@ -60,6 +60,8 @@ class TargetController : public controller_interface::ControllerInterface {
   [[nodiscard]] JointLimits limits(const fpbm::Tree<>& tree) const;
   /// Applies the limits of the ros2_control tags in robot_description.
   void narrow_by_tags(SourcedLimits& limits) const;
+  /// Applies the soft limits (safety_controller) in robot_description.
+  void narrow_softly(SourcedLimits& limits) const;
   /// The limits of the preset, for each arm of a tree. Throws std::invalid_argument if an arm is not the preset.
   [[nodiscard]] JointLimits preset_limits(const fpbm::Tree<>& tree) const;
   /// The torques of a tree from described(), with the inertias of robot_description.
