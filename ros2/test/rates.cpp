@@ -28,6 +28,7 @@ void turn(Robot& robot, const Transform<>& start, double t) {
   robot.hear("~/target_pose", pose_message(turned * start));
 }
 
+/// A rate of the controller that is valid, or is refused with an error that names the nearest rates.
 void rate(unsigned int manager, int own, bool valid, const std::string& nearest) {
   Robot robot;
   robot.rate = manager;
@@ -36,7 +37,7 @@ void rate(unsigned int manager, int own, bool valid, const std::string& nearest)
   const std::string what = std::to_string(own) + " Hz of " + std::to_string(manager) + " Hz: ";
   const bool loaded = robot.load({{"update_rate", rclcpp::ParameterValue(own)}});
   check(loaded == valid, (what + (valid ? "configured" : "refused")).c_str(), loaded);
-  if (!valid) check(logged(nearest), (what + "named " + nearest).c_str(), 1);
+  if (!valid) check(logged(nearest), (what + "nearest rates named").c_str(), 1);
   if (!loaded) return;
   (void)robot.activate();
   const Transform<> start = robot.tip();
@@ -83,6 +84,11 @@ void rates() {
   rate(1000, 500, true, "");
   rate(500, 100, true, "");
   rate(50, 20, false, "10 or 25");
+  rate(100, 60, false, "give 50 or 100");
+  rate(100, 70, false, "give 50 or 100");
+  rate(1000, 501, false, "give 500 or 1000");
+  rate(50, 200, false, "give 50\n");
+  rate(100, 0, false, "give 100\n");
   rate(100, 40, false, "25 or 50");
   rate(1000, 300, false, "250 or 500");
   calls_too_soon();

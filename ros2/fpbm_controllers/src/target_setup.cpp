@@ -183,20 +183,22 @@ MotionScheme TargetController::scheme(Eigen::Index dof) const {
   return scheme;
 }
 
-/// The controller manager calls a controller in every n-th tick of the manager.
+/// The controller manager calls a controller in every n-th tick of the manager, and replaces other rates, without an
+/// error, by a rate near the given rate or by the rate of the manager. For the limits, the given rate must be the rate.
 void TargetController::require_rate() const {
   if (is_async())
     throw std::invalid_argument("is_async: must be false, since a write could mix the commands of two ticks");
-  const unsigned int own = get_update_rate();
-  if (own > 0 && manager_rate_ % own == 0) return;
-  const auto rate = static_cast<unsigned int>(get_node()->get_parameter("update_rate").as_int());
-  unsigned int below = std::min(std::max(rate, 1U), manager_rate_);
-  unsigned int above = below;
-  while (below > 1 && manager_rate_ % below != 0) --below;
-  while (above < manager_rate_ && manager_rate_ % above != 0) ++above;
-  throw std::invalid_argument("update_rate: " + std::to_string(rate) + " Hz does not divide the controller manager's " +
-                              std::to_string(manager_rate_) + " Hz: give " + std::to_string(below) + " or " +
-                              std::to_string(above));
+  const auto manager = static_cast<std::int64_t>(manager_rate_);
+  const std::int64_t rate = get_node()->get_parameter("update_rate").as_int();
+  const bool in_range = 0 < rate && rate <= manager;
+  if (in_range && manager % rate == 0) return;
+  std::int64_t below = in_range ? rate : manager;
+  std::int64_t above = below;
+  while (manager % below != 0) --below;
+  while (manager % above != 0) ++above;
+  throw std::invalid_argument("update_rate: is " + std::to_string(rate) + " Hz: must divide the controller manager's " +
+                              std::to_string(manager) + " Hz: give " +
+                              (below == above ? "" : std::to_string(below) + " or ") + std::to_string(above));
 }
 
 TargetController::JointLimits TargetController::preset_limits(const fpbm::Tree<>& tree) const {
