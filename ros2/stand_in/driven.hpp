@@ -197,7 +197,7 @@ class Driven {
   }
 
   /// Calls the controller `seconds` [s] after the last call. If a locked interface leaves the command of a joint
-  /// unchanged, the differences omit this call for this joint.
+  /// unchanged, the joint is at rest after this call.
   void call(double seconds) {
     ++calls;
     const int refusals_before = refusals;
@@ -207,7 +207,10 @@ class Driven {
     good(result == controller_interface::return_type::OK, "update");
     const bool refused = refusals != refusals_before;
     for (std::size_t i = 0; i < kDof; ++i) {
-      if ((refused || refused_before_) && command[i] == last_[i]) continue;
+      if ((refused || refused_before_) && command[i] == last_[i]) {
+        last_velocity_[i] = last_acceleration_[i] = 0.0;
+        continue;
+      }
       const auto joint = limits_.joint(static_cast<Eigen::Index>(i));
       effort_ratio = std::max(effort_ratio, std::abs(torque[i]) / joint.effort);
       if (std::isnan(torque[i])) effort_ratio = std::numeric_limits<double>::infinity();

@@ -93,13 +93,19 @@ CallbackReturn TargetController::on_error(const rclcpp_lifecycle::State&) {
 /// Constructs only objects of fixed size within the controller: the loop of the manager may call this function.
 CallbackReturn TargetController::on_activate(const rclcpp_lifecycle::State&) {
   try {
-    motion_->begin(start());
+    start_ = start();
+    motion_->begin(start_, start_);
   } catch (const std::exception& error) {  // For example, a joint is outside its limits.
     RCLCPP_ERROR(get_node()->get_logger(), "%s", error.what());
     return CallbackReturn::FAILURE;
   }
   pace_ = Pace(dt_);
-  for (std::size_t k = 0; k < tasks_.size(); ++k) seen_[k] = topics_->exchange().tasks[k].target.get().count;
+  command_ = motion_->state();
+  accepted_ = start_;
+  for (std::size_t k = 0; k < tasks_.size(); ++k) {
+    newest_[k] = Target{};
+    seen_[k] = topics_->exchange().tasks[k].target.get().count;
+  }
   locked_for_ = 0;
   report_ = Report{};
   return CallbackReturn::SUCCESS;
@@ -147,41 +153,32 @@ TargetController::Joints TargetController::start() {
 /// joint with a locked command interface keeps its previous command.
 CallbackReturn TargetController::on_deactivate(const rclcpp_lifecycle::State&) {
   topics_->exchange().report.set(Report{});
-  const Joints& q = motion_->state().q;
-  const Joints zero = Joints::Zero(q.size());
-  if (const auto joint = command(q, zero, zero)) {
+  command_.qd.setZero();
+  if (const auto joint = write(command_.qd)) {
     RCLCPP_WARN(get_node()->get_logger(), "joint '%s': its command is locked by another thread, and stays unchanged",
                 params_.joints[*joint].c_str());
   }
   return CallbackReturn::SUCCESS;
 }
 
-/// Executes at most one tick per call. Each tick has the length for which the limits were made: late calls delay the
-/// arm.
-///
 /// An interface that another thread has locked is not an error: after an error, the controller manager would deactivate
-/// the controller in motion. The arm waits until all joints have accepted a command. If the wait is too long, the
-/// motion restarts at rest at the last command, and the arm stops. With torques alone, an arm cannot wait in motion: a
-/// locked joint keeps its previous torque. If readings stay locked, the last reading deviates more and more from the
+/// the controller in motion. The arm waits at the positions that the joints have accepted until no interface is locked,
+/// and then starts from rest. If the wait is too long, the arm stops. With torques alone, an arm cannot wait in motion:
+/// a locked joint keeps its previous torque. If readings stay locked, the last reading deviates more and more from the
 /// command, and the arm stops.
 return_type TargetController::update(const rclcpp::Time& time, const rclcpp::Duration& period) {
-  if (!pace_.due(period.seconds())) {
-    ++report_.early;
-    return return_type::OK;
-  }
   take_messages();
   const bool read = !measure();
   compare();
-  const fpbm::State<kDof> start = motion_->state();
-  if (locked_for_ == 0 || !has_positions()) motion_->tick(report_);
-  const auto& [q, qd] = motion_->state();
-  if (torque_) set_torques(start);
-  const auto locked = command(q, qd, torque_ ? torque_->torque() : qd);
+  const fpbm::State<kDof> before = command_;
+  const bool waits = locked_for_ > 0 && has_positions();
+  if (!waits) advance(period.seconds());
+  if (torque_) set_torques(before);
+  const auto locked = write(torque_ ? torque_->torque() : command_.qd);
   locked_for_ = locked ? locked_for_ + 1 : 0;
-  if (locked_for_ == kLongestLock) {
-    if (has_positions()) motion_->begin(Joints(q));
-    stop(Fault::kLocked, *locked);
-  }
+  if (locked_for_ == kLongestLock) stop(Fault::kLocked, *locked);
+  if (locked && has_positions()) command_ = {accepted_, Joints::Zero(accepted_.size())};
+  if (!locked && waits) restart();
   if (locked || !read) ++report_.missed;
   report_.active = true;
   report_.time = time;
@@ -199,7 +196,37 @@ void TargetController::take_messages() noexcept {
     const std::optional<Target> target = topics_->exchange().tasks[k].target.try_get();
     if (!target || target->count == seen_[k]) continue;
     seen_[k] = target->count;
-    if (!motion_->push(k, *target)) ++report_.tasks[k].rejected;
+    if (motion_->push(k, *target)) {
+      newest_[k] = *target;
+    } else {
+      ++report_.tasks[k].rejected;
+    }
+  }
+}
+
+void TargetController::advance(double period) noexcept {
+  if (pace_.starts(period)) {
+    tick_start_ = motion_->state();
+    motion_->tick(report_);
+  } else {
+    ++report_.early;
+  }
+  command_ = motion_->state();
+  if (!(pace_.left() > 0.0)) return;
+  const double t = dt_ - pace_.left();
+  const Joints& acceleration = motion_->acceleration();
+  command_.q = tick_start_.q + t * tick_start_.qd + t * t / 2.0 * acceleration;
+  command_.qd = tick_start_.qd + t * acceleration;
+}
+
+void TargetController::restart() {
+  motion_->begin(command_.q, start_);
+  pace_ = Pace(dt_);
+  if (report_.fault != Fault::kNone) motion_->stop();
+  for (std::size_t k = 0; k < tasks_.size(); ++k) {
+    Target again = newest_[k];
+    again.stamp = 0.0;
+    if (again.count > 0 && !again.moves) (void)motion_->push(k, again);
   }
 }
 
@@ -226,9 +253,8 @@ void TargetController::compare() {
   double largest = 0.0;
   std::size_t joint = 0;
   for (Eigen::Index i = 0; i < measured_.size(); ++i) {
-    const double error = std::isfinite(measured_velocity_(i))
-                             ? std::abs(difference(i, measured_(i), motion_->state().q(i)))
-                             : std::numeric_limits<double>::quiet_NaN();
+    const double error = std::isfinite(measured_velocity_(i)) ? std::abs(difference(i, measured_(i), command_.q(i)))
+                                                              : std::numeric_limits<double>::quiet_NaN();
     if (!(error <= largest)) {
       largest = error;
       joint = static_cast<std::size_t>(i);
@@ -248,28 +274,32 @@ void TargetController::stop(Fault fault, std::size_t joint) noexcept {
   report_.fault_joint = joint;
 }
 
-void TargetController::set_torques(const fpbm::State<kDof>& command) noexcept {
-  fpbm::State<kDof> measured = command;
+void TargetController::set_torques(const fpbm::State<kDof>& commanded) noexcept {
+  fpbm::State<kDof> measured = commanded;
   const auto is_read = [](fpbm::JointBits unread, Eigen::Index i, double value) {
     return (unread & fpbm::joint_bit(i)) == 0 && std::isfinite(value);
   };
   for (Eigen::Index i = 0; i < measured_.size(); ++i) {
-    if (is_read(unread_positions_, i, measured_(i))) measured.q(i) += difference(i, measured_(i), command.q(i));
+    if (is_read(unread_positions_, i, measured_(i))) measured.q(i) += difference(i, measured_(i), commanded.q(i));
     if (is_read(unread_velocities_, i, measured_velocity_(i))) measured.qd(i) = measured_velocity_(i);
   }
-  if (const auto limited = first_of(torque_->tick(command, motion_->acceleration(), measured))) {
+  if (const auto limited = first_of(torque_->tick(commanded, motion_->acceleration(), measured))) {
     ++report_.limited;
     report_.limited_joint = *limited;
   }
 }
 
-std::optional<std::size_t> TargetController::command(const Joints& q, const Joints& qd, const Joints& torque) {
+std::optional<std::size_t> TargetController::write(const Joints& torque) {
   std::optional<std::size_t> locked;
   auto interface = command_interfaces_.begin();
   for (const std::string& type : params_.command_interfaces) {
-    const Joints& values = type == "position" ? q : type == "velocity" ? qd : torque;
+    const Joints& values = type == "position" ? command_.q : type == "velocity" ? command_.qd : torque;
     for (Eigen::Index i = 0; i < values.size(); ++i) {
-      if (!(interface++)->set_value(values(i))) locked = static_cast<std::size_t>(i);
+      if (!(interface++)->set_value(values(i))) {
+        locked = static_cast<std::size_t>(i);
+      } else if (type == "position") {
+        accepted_(i) = values(i);
+      }
     }
   }
   return locked;

@@ -79,6 +79,11 @@ class TargetController : public controller_interface::ControllerInterface {
   /// Whether torques depend on the measured state.
   [[nodiscard]] bool has_feedback() const noexcept { return torque_ && torque_->has_feedback(); }
   void take_messages() noexcept;
+  /// Advances the command by the time since the last call, by at most a tick: late calls delay the arm. A tick has the
+  /// length for which the limits were made. A call before the end of a tick commands the state of its time in the tick.
+  void advance(double period) noexcept;
+  /// Starts from rest at the commanded positions. The motion to the newest poses continues.
+  void restart();
   /// Reads the joints' positions, and for the feedback of torques the velocities. A joint that cannot be read keeps its
   /// last reading. Returns the number of the first joint that cannot be read.
   [[nodiscard]] std::optional<std::size_t> measure();
@@ -87,11 +92,11 @@ class TargetController : public controller_interface::ControllerInterface {
   /// Stops the arm if the following error of a joint is too large.
   void compare();
   void stop(Fault fault, std::size_t joint) noexcept;
-  /// Sets the torques of a tick. command: at the start of the tick. A position or velocity without a reading has no
+  /// Sets the torques. commanded: at the time of the readings. A position or velocity without a reading has no
   /// feedback.
-  void set_torques(const fpbm::State<kDof>& command) noexcept;
-  /// Writes the commands. Returns a joint whose command interface is locked.
-  [[nodiscard]] std::optional<std::size_t> command(const Joints& q, const Joints& qd, const Joints& torque);
+  void set_torques(const fpbm::State<kDof>& commanded) noexcept;
+  /// Writes the command and the torques. Returns a joint whose command interface is locked.
+  [[nodiscard]] std::optional<std::size_t> write(const Joints& torque);
 
   static constexpr int kLongestLock = 5;  ///< Ticks that the arm waits for a locked interface before it stops.
 
@@ -108,7 +113,12 @@ class TargetController : public controller_interface::ControllerInterface {
   std::unique_ptr<Motion> motion_;
   std::optional<ComputedTorque> torque_;  ///< None without the command interface effort.
   Pace pace_;
+  Joints start_;  ///< Positions at activation.
+  fpbm::State<kDof> tick_start_;
+  fpbm::State<kDof> command_;                         ///< The last command.
+  Joints accepted_;                                   ///< The last positions that the interfaces have accepted.
   std::array<std::uint64_t, Report::kTasks> seen_{};  ///< Target::count of each task's newest target.
+  std::array<Target, Report::kTasks> newest_{};       ///< The newest target of each task that was not rejected.
   int locked_for_ = 0;                                ///< Ticks since all joints have taken a command.
   Joints measured_;
   Joints measured_velocity_;              ///< Zero without feedback of torques.
