@@ -25,3 +25,5 @@ void two_arms();
 void grasp();
 /// Tasks that the controller accepts or rejects.
 void tasks();
+/// The texts of errors, warnings and diagnostics.
+void wording();

@@ -104,6 +104,7 @@ CallbackReturn TargetController::on_activate(const rclcpp_lifecycle::State&) {
   accepted_ = start_;
   for (std::size_t k = 0; k < tasks_.size(); ++k) {
     newest_[k] = Target{};
+    newest_stamp_[k] = 0.0;
     seen_[k] = topics_->exchange().tasks[k].target.get().count;
   }
   locked_for_ = 0;
@@ -198,8 +199,10 @@ void TargetController::take_messages() noexcept {
     seen_[k] = target->count;
     if (motion_->push(k, *target)) {
       newest_[k] = *target;
+      if (target->stamp != 0.0) newest_stamp_[k] = target->stamp;
     } else {
       ++report_.tasks[k].rejected;
+      report_.tasks[k].ahead = target->stamp > newest_stamp_[k];
     }
   }
 }

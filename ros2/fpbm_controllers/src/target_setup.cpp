@@ -45,6 +45,48 @@ void require_joints(const std::vector<std::string>& given, const fpbm::Tree<>& t
                               " in robot_description between base_frame and the frames: give [" + list + "]");
 }
 
+/// A message of the library with the names of the parameters.
+[[nodiscard]] std::string with_names_of_ros(std::string message) {
+  const std::string own = "null_stiffness";
+  for (auto at = message.find(own); at != std::string::npos; at = message.find(own)) {
+    message.replace(at, own.size(), "rest_stiffness");
+  }
+  return message;
+}
+
+/// Throws, with the whole name of the parameter, if a number is not finite. The lists of joints are checked elsewhere.
+void require_finite(const target_controller::Params& params) {
+  const auto require = [](const std::string& name, double value) {
+    if (!std::isfinite(value)) {
+      throw std::invalid_argument(name + ": is " + std::to_string(value) + ": must be finite");
+    }
+  };
+  const auto& scheme = params.scheme;
+  const auto& target = params.target;
+  const std::pair<const char*, double> numbers[] = {{"following_error", params.following_error},
+                                                    {"tip_rate", params.tip_rate},
+                                                    {"diagnostics_rate", params.diagnostics_rate},
+                                                    {"scheme.alpha", scheme.alpha},
+                                                    {"scheme.k1", scheme.k1},
+                                                    {"scheme.k2", scheme.k2},
+                                                    {"scheme.null_damping", scheme.null_damping},
+                                                    {"scheme.rest_stiffness", scheme.rest_stiffness},
+                                                    {"target.velocity", target.velocity},
+                                                    {"target.acceleration", target.acceleration},
+                                                    {"target.jerk", target.jerk},
+                                                    {"target.angular_velocity", target.angular_velocity},
+                                                    {"target.angular_acceleration", target.angular_acceleration},
+                                                    {"target.angular_jerk", target.angular_jerk},
+                                                    {"target.timeout", target.timeout}};
+  for (const auto& [name, value] : numbers) require(name, value);
+  for (const auto& [name, task] : params.task.tasks_map) {
+    require("task." + name + ".k1", task.k1);
+    require("task." + name + ".k2", task.k2);
+  }
+  for (const double value : params.tool.xyz) require("tool.xyz", value);
+  for (const double value : params.tool.rpy) require("tool.rpy", value);
+}
+
 /// Throws unless velocities are only with positions, and all are in the order position, velocity, effort.
 void require_commands(const std::vector<std::string>& given) {
   using List = std::vector<std::string>;
@@ -67,15 +109,7 @@ void require_commands(const std::vector<std::string>& given) {
 void TargetController::read_parameters() {
   params_ = listener_->get_params();
   const auto& target = params_.target;
-  const std::pair<const char*, double> numbers[] = {{"following_error", params_.following_error},
-                                                    {"tip_rate", params_.tip_rate},
-                                                    {"diagnostics_rate", params_.diagnostics_rate},
-                                                    {"target.timeout", target.timeout}};
-  for (const auto& [name, value] : numbers) {
-    if (!std::isfinite(value)) {
-      throw std::invalid_argument(std::string(name) + ": is " + std::to_string(value) + ": must be finite");
-    }
-  }
+  require_finite(params_);
   require_commands(params_.command_interfaces);
   if (params_.state_interfaces.empty() || params_.state_interfaces[0] != "position") {
     throw std::invalid_argument("state_interfaces: does not begin with position: put position first");
@@ -102,19 +136,26 @@ void TargetController::read_parameters() {
   const fpbm::TargetBounds<> bounds{target.velocity,         target.acceleration,         target.jerk,
                                     target.angular_velocity, target.angular_acceleration, target.angular_jerk};
   const MotionSettings settings{tree, motion_tasks(tree), scheme(robot_->dof()), options, *limits_, bounds, filter};
-  motion_ = is_tip() && robot_->dof() >= fpbm::Pose::kRows ? make_tip_motion(settings) : make_stack_motion(settings);
+  try {
+    motion_ = is_tip() && robot_->dof() >= fpbm::Pose::kRows ? make_tip_motion(settings) : make_stack_motion(settings);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(with_names_of_ros(error.what()));
+  }
   torque_.reset();
   if (params_.command_interfaces.back() == "effort") torque_.emplace(computed_torque(tree));
 }
 
-TargetController::Joints TargetController::joint_numbers(const char* name, const std::vector<double>& values,
-                                                         Eigen::Index dof) {
-  const Eigen::Map<const Eigen::VectorXd> vector(values.data(), static_cast<Eigen::Index>(values.size()));
-  if (vector.size() != dof || !vector.allFinite()) {
-    throw std::invalid_argument(std::string(name) + ": has " + std::to_string(values.size()) + " entries: must be " +
-                                std::to_string(dof) + " finite numbers, one for each joint");
+TargetController::Joints TargetController::joint_numbers(const char* name, const std::vector<double>& values) const {
+  if (values.size() != params_.joints.size()) {
+    throw std::invalid_argument(std::string(name) + ": has " + std::to_string(values.size()) + " entries: must have " +
+                                std::to_string(params_.joints.size()) + ", one for each joint");
   }
-  return vector;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (std::isfinite(values[k])) continue;
+    throw std::invalid_argument(std::string(name) + ": is " + std::to_string(values[k]) + " for joint '" +
+                                params_.joints[k] + "': must be finite");
+  }
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
 fpbm::Tree<> TargetController::described() const {
@@ -178,8 +219,8 @@ std::vector<MotionTask> TargetController::motion_tasks(const fpbm::Tree<>& tree)
 MotionScheme TargetController::scheme(Eigen::Index dof) const {
   const auto& given = params_.scheme;
   MotionScheme scheme{given.alpha, Joints::Ones(dof), given.null_damping, given.rest_stiffness, std::nullopt};
-  if (!given.weights.empty()) scheme.weights = joint_numbers("scheme.weights", given.weights, dof);
-  if (!given.rest_posture.empty()) scheme.rest_posture = joint_numbers("scheme.rest_posture", given.rest_posture, dof);
+  if (!given.weights.empty()) scheme.weights = joint_numbers("scheme.weights", given.weights);
+  if (!given.rest_posture.empty()) scheme.rest_posture = joint_numbers("scheme.rest_posture", given.rest_posture);
   return scheme;
 }
 
@@ -272,7 +313,7 @@ TargetController::JointLimits TargetController::limits(const fpbm::Tree<>& tree)
 
   JointLimits own = JointLimits::none(dof);
   const auto take = [&](const char* name, const std::vector<double>& values, Joints& bound) {
-    if (!values.empty()) bound = joint_numbers(name, values, dof);
+    if (!values.empty()) bound = joint_numbers(name, values);
   };
   take("limits.lower", given.lower, own.lower);
   take("limits.upper", given.upper, own.upper);

@@ -58,8 +58,8 @@ ComputedTorque TargetController::computed_torque(fpbm::Tree<> tree) const {
                                     given.robot_adds_gravity};
   require(!given.kp.empty() || !given.kd.empty() || has_positions(),
           "effort.kp: is empty: give a gain for each joint, or zeros for torques without feedback");
-  if (!given.kp.empty()) settings.kp = joint_numbers("effort.kp", given.kp, dof);
-  settings.kd = given.kd.empty() ? Joints(2.0 * settings.kp.cwiseSqrt()) : joint_numbers("effort.kd", given.kd, dof);
+  if (!given.kp.empty()) settings.kp = joint_numbers("effort.kp", given.kp);
+  settings.kd = given.kd.empty() ? Joints(2.0 * settings.kp.cwiseSqrt()) : joint_numbers("effort.kd", given.kd);
   for (Eigen::Index i = 0; i < dof; ++i) {
     const std::string& joint = params_.joints[static_cast<std::size_t>(i)];
     require_stable(joint, settings.kp(i), settings.kd(i), dt_);

@@ -68,7 +68,7 @@ class TargetController : public controller_interface::ControllerInterface {
   [[nodiscard]] ComputedTorque computed_torque(fpbm::Tree<> tree) const;
   /// A list of a parameter as a vector. Throws std::invalid_argument unless the list has a finite number for each
   /// joint.
-  [[nodiscard]] static Joints joint_numbers(const char* name, const std::vector<double>& values, Eigen::Index dof);
+  [[nodiscard]] Joints joint_numbers(const char* name, const std::vector<double>& values) const;
   /// Whether the commands contain positions, and not only torques.
   [[nodiscard]] bool has_positions() const noexcept { return params_.command_interfaces[0] == "position"; }
   void close();
@@ -115,11 +115,12 @@ class TargetController : public controller_interface::ControllerInterface {
   Pace pace_;
   Joints start_;  ///< Positions at activation.
   fpbm::State<kDof> tick_start_;
-  fpbm::State<kDof> command_;                         ///< The last command.
-  Joints accepted_;                                   ///< The last positions that the interfaces have accepted.
-  std::array<std::uint64_t, Report::kTasks> seen_{};  ///< Target::count of each task's newest target.
-  std::array<Target, Report::kTasks> newest_{};       ///< The newest target of each task that was not rejected.
-  int locked_for_ = 0;                                ///< Ticks since all joints have taken a command.
+  fpbm::State<kDof> command_;                          ///< The last command.
+  Joints accepted_;                                    ///< The last positions that the interfaces have accepted.
+  std::array<std::uint64_t, Report::kTasks> seen_{};   ///< Target::count of each task's newest target.
+  std::array<Target, Report::kTasks> newest_{};        ///< The newest target of each task that was not rejected.
+  std::array<double, Report::kTasks> newest_stamp_{};  ///< Newest stamp of each task that was not rejected [s].
+  int locked_for_ = 0;                                 ///< Ticks since all joints have taken a command.
   Joints measured_;
   Joints measured_velocity_;              ///< Zero without feedback of torques.
   fpbm::JointBits unread_positions_ = 0;  ///< Joints whose positions could not be read in this tick.
