@@ -239,6 +239,25 @@ void feed_forward() {
   }
 }
 
+/// While an arm with position commands waits for a locked joint, the feed-forward torque is the torque at rest.
+void feed_forward_at_a_lock() {
+  Robot robot;
+  stand_in::parameters.command_interfaces = {"position", "velocity", "effort"};
+  check(robot.load() && robot.activate(), "feed-forward, a lock: activated", 1);
+  const Transform<> start = robot.tip();
+  for (int i = 0; i < 500; ++i) {
+    if (i % 50 == 0) robot.hear("~/target_pose", pose_message(led(start, 1e-3 * i)));
+    robot.tick();
+  }
+  robot.command_locks[2].calls = 3;
+  robot.tick(2);
+  const Dynamics model(fpbm::presets::panda());
+  Dynamics::State state;
+  model.robot().update(Torques(robot.command.data()), Torques::Zero(), state);
+  const double error = (Torques(robot.torque.data()) - model.gravity_torque(state)).cwiseAbs().maxCoeff();
+  check(error < 1e-9, "feed-forward, a lock: difference from the torque at rest [Nm]", error);
+}
+
 /// config/fr3_torques.yaml with the description of an FR3.
 void config() {
   TorqueArm robot;
@@ -443,6 +462,7 @@ void refusals() {
 void efforts() {
   computed_torque();
   feed_forward();
+  feed_forward_at_a_lock();
   config();
   two_arms_together();
   in_faults();

@@ -17,7 +17,7 @@ using stand_in::Robot;
 void swing(Robot& robot, const Transform<>& start, int i) {
   Transform<> pose = start;
   pose.p += fpbm::Vector<3>(0.05, 0.15, 0.1) * std::sin(4e-3 * i);
-  if (i % 10 == 0) robot.hear("~/target_pose", pose_message(pose));
+  if (i % 10 == 0) robot.hear("~/target_pose", pose_message(pose, 1e-3 * i));
 }
 
 void one_by_one() {
@@ -74,6 +74,13 @@ void resumed() {
     }
   }
   check(fastest > 0.3 && largest < 1.001, "resumed after a lock: acceleration, of its bound", largest);
+  for (int i = 2000; i < 2100; ++i) {
+    swing(robot, start, i);
+    robot.tick();
+  }
+  const auto& said = robot.said<DiagnosticArray>("/diagnostics").last.status.at(0);
+  check(said.values.at(4).key == "targets rejected" && said.values.at(4).value == "0",
+        "resumed after a lock: stamps that are rejected", std::stod(said.values.at(4).value));
   const Transform<> goal = start;
   robot.hear("~/target_pose", pose_message(goal));
   robot.tick(300);
@@ -82,6 +89,16 @@ void resumed() {
   check(distance(robot.tip(), goal) < 1e-5, "resumed after a lock: distance from the target before [m, rad]",
         distance(robot.tip(), goal));
   check(robot.allocated == 0, "resumed after a lock: allocations", static_cast<double>(robot.allocated));
+  geometry_msgs::msg::TwistStamped twist;  // A twist that has ended.
+  twist.header.frame_id = "base";
+  twist.twist.linear.z = 0.05;
+  robot.hear("~/target_twist", twist);
+  robot.tick(6000);
+  const Transform<> stands = robot.tip();
+  robot.command_locks[4].calls = 2;
+  robot.tick(500);
+  check(distance(robot.tip(), stands) < 1e-5, "resumed after a twist and a lock: displacement [m, rad]",
+        distance(robot.tip(), stands));
   robot.q[3] += 0.2;  // A fault, then a lock.
   robot.held = true;
   robot.tick(500);

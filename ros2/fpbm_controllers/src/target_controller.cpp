@@ -174,7 +174,7 @@ return_type TargetController::update(const rclcpp::Time& time, const rclcpp::Dur
   const fpbm::State<kDof> before = command_;
   const bool waits = locked_for_ > 0 && has_positions();
   if (!waits) advance(period.seconds());
-  if (torque_) set_torques(before);
+  if (torque_) set_torques(before, waits ? Joints(Joints::Zero(before.q.size())) : motion_->acceleration());
   const auto locked = write(torque_ ? torque_->torque() : command_.qd);
   locked_for_ = locked ? locked_for_ + 1 : 0;
   if (locked_for_ == kLongestLock) stop(Fault::kLocked, *locked);
@@ -277,7 +277,7 @@ void TargetController::stop(Fault fault, std::size_t joint) noexcept {
   report_.fault_joint = joint;
 }
 
-void TargetController::set_torques(const fpbm::State<kDof>& commanded) noexcept {
+void TargetController::set_torques(const fpbm::State<kDof>& commanded, const Joints& acceleration) noexcept {
   fpbm::State<kDof> measured = commanded;
   const auto is_read = [](fpbm::JointBits unread, Eigen::Index i, double value) {
     return (unread & fpbm::joint_bit(i)) == 0 && std::isfinite(value);
@@ -286,7 +286,7 @@ void TargetController::set_torques(const fpbm::State<kDof>& commanded) noexcept 
     if (is_read(unread_positions_, i, measured_(i))) measured.q(i) += difference(i, measured_(i), commanded.q(i));
     if (is_read(unread_velocities_, i, measured_velocity_(i))) measured.qd(i) = measured_velocity_(i);
   }
-  if (const auto limited = first_of(torque_->tick(commanded, motion_->acceleration(), measured))) {
+  if (const auto limited = first_of(torque_->tick(commanded, acceleration, measured))) {
     ++report_.limited;
     report_.limited_joint = *limited;
   }

@@ -34,13 +34,13 @@ void require_stable(const std::string& joint, double kp, double kd, double dt) {
 
 /// The payload as a link whose frame is the tip.
 [[nodiscard]] fpbm::LinkInertia<> payload_of(const target_controller::Params& params) {
-  const auto& [mass, centre] = params.effort.payload;
+  const double mass = params.effort.payload.mass;
   require(std::isfinite(mass), "effort.payload.mass: is " + std::to_string(mass) + ": must be finite");
   require(mass == 0.0 || params.tasks.empty(),
           "effort.payload: is at tip_frame, but tasks are given: add the payload to robot_description");
   fpbm::LinkInertia<> load;
   load.mass = mass;
-  load.centre = three("effort.payload.centre", centre);
+  load.centre = three("effort.payload.centre", params.effort.payload.centre);
   return load;
 }
 

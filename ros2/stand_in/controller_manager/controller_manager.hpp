@@ -104,7 +104,7 @@ class ControllerManager {
 
   std::string urdf_;
   std::string file_;
-  std::mutex mutex_;  ///< Of the controller.
+  std::mutex mutex_;  ///< Protects the controller.
   std::shared_ptr<Controller> controller_;
   std::atomic<int> ticks_{0};
   std::atomic<int> switch_to_{-1};  ///< 1: activate in the next tick, 0: deactivate, -1: neither.

@@ -25,6 +25,7 @@ struct SoftJointLimits {
   double min_position = std::numeric_limits<double>::quiet_NaN();
   double max_position = std::numeric_limits<double>::quiet_NaN();
   double k_position = std::numeric_limits<double>::quiet_NaN();
+  double k_velocity = std::numeric_limits<double>::quiet_NaN();
 };
 
 }  // namespace joint_limits

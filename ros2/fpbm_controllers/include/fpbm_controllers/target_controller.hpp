@@ -94,7 +94,7 @@ class TargetController : public controller_interface::ControllerInterface {
   void stop(Fault fault, std::size_t joint) noexcept;
   /// Sets the torques. commanded: at the time of the readings. A position or velocity without a reading has no
   /// feedback.
-  void set_torques(const fpbm::State<kDof>& commanded) noexcept;
+  void set_torques(const fpbm::State<kDof>& commanded, const Joints& acceleration) noexcept;
   /// Writes the command and the torques. Returns a joint whose command interface is locked.
   [[nodiscard]] std::optional<std::size_t> write(const Joints& torque);
 
