@@ -1,6 +1,7 @@
 #pragma once
 
 #include <urdf/model.h>
+#include <cmath>
 #include <fpbm/geometry/rotation.hpp>
 #include <fpbm/model/chain.hpp>
 #include <memory>
@@ -26,8 +27,18 @@ inline urdf::Joint& add(urdf::Model& model, const std::string& joint, const std:
   return *made;
 }
 
-/// Adds a chain from the link `parent` to a link "flange", with the joint names and bounds of the chain. All added
-/// names contain the prefix. at: pose of the base of the chain in the frame of `parent`.
+/// The <inertial> of a link.
+[[nodiscard]] inline std::shared_ptr<urdf::Inertial> inertial_of(const fpbm::LinkInertia<>& link) {
+  fpbm::Transform<> place;
+  place.p = link.centre;
+  const auto& I = link.inertia;
+  return std::make_shared<urdf::Inertial>(
+      urdf::Inertial{pose_of(place), link.mass, I(0, 0), I(0, 1), I(0, 2), I(1, 1), I(1, 2), I(2, 2)});
+}
+
+/// Adds a chain from the link `parent` to a link "flange", with the joint names, bounds, inertias and friction of the
+/// chain. An infinite effort is not given. All added names contain the prefix. at: pose of the base of the chain in the
+/// frame of `parent`.
 inline void add_chain(urdf::Model& model, const fpbm::Chain<>& chain, std::string parent,
                       const std::string& prefix = "", fpbm::Transform<> at = {}) {
   for (const auto& joint : chain.joints) {
@@ -38,7 +49,10 @@ inline void add_chain(urdf::Model& model, const fpbm::Chain<>& chain, std::strin
                                                              : urdf::Joint::REVOLUTE;
     made.axis = {joint.axis(0), joint.axis(1), joint.axis(2)};
     made.limits = std::make_shared<urdf::JointLimits>(
-        urdf::JointLimits{joint.bounds.lower, joint.bounds.upper, 100.0, joint.bounds.velocity});
+        urdf::JointLimits{joint.bounds.lower, joint.bounds.upper,
+                          std::isfinite(joint.bounds.effort) ? joint.bounds.effort : 0.0, joint.bounds.velocity});
+    made.dynamics = std::make_shared<urdf::JointDynamics>(urdf::JointDynamics{joint.drive.viscous, joint.drive.dry});
+    if (joint.moved.mass > 0.0) model.links_[made.child_link_name]->inertial = inertial_of(joint.moved);
     if (joint.mimic.joint >= 0) {
       made.mimic = std::make_shared<urdf::JointMimic>(
           urdf::JointMimic{joint.mimic.offset, joint.mimic.ratio,

@@ -9,8 +9,10 @@
 #include <deque>
 #include <fpbm/model/joint.hpp>
 #include <fpbm_controllers/target_controller_parameters.hpp>
+#include <joint_limits/joint_limits.hpp>
 #include <limits>
 #include <stdexcept>
+#include <vector>
 
 namespace stand_in {
 
@@ -27,9 +29,11 @@ class Driven {
   using CallbackReturn = controller_interface::CallbackReturn;
   using Overrides = std::map<std::string, rclcpp::ParameterValue>;
 
+  virtual ~Driven() = default;
+
   /// start: posture at rest. Resets the parameters to their defaults.
   Driven(const std::string& robot_description, const JointLimits& limits, const Joints& start)
-      : description{"targets", robot_description, 0, 0, {}}, q(start), limits_(limits) {
+      : description{"targets", robot_description, 0, 0}, q(start), limits_(limits) {
     parameters = {};
     command.fill(std::numeric_limits<double>::quiet_NaN());  // Like hardware before the first command.
   }
@@ -45,9 +49,9 @@ class Driven {
   [[nodiscard]] bool activate() {
     good(state == Lifecycle::kInactive, "activated from another state than inactive");
     std::vector<hardware_interface::LoanedCommandInterface> commands;
-    for (std::size_t i = 0; i < kDof; ++i) commands.emplace_back(command[i], command_locks[i]);
-    if (parameters.command_interfaces.size() == 2) {
-      for (std::size_t i = 0; i < kDof; ++i) commands.emplace_back(velocity[i], command_locks[kDof + i]);
+    for (const std::string& type : parameters.command_interfaces) {
+      Joints& values = type == "position" ? command : type == "velocity" ? velocity : torque;
+      for (std::size_t i = 0; i < kDof; ++i) commands.emplace_back(values[i], command_locks[commands.size()]);
     }
     std::vector<hardware_interface::LoanedStateInterface> states;
     for (std::size_t i = 0; i < kDof; ++i) states.emplace_back(q[i], state_locks[i]);
@@ -70,8 +74,8 @@ class Driven {
     controller_->release_interfaces();
   }
 
-  /// A tick of the manager and of the hardware. Unless the arm is held, its joints follow the command from `lag` ticks
-  /// ago.
+  /// A tick of the manager and of the hardware. By default, unless the arm is held, its joints follow the command from
+  /// `lag` ticks ago.
   void tick() { tick(1.0 / rate); }
   /// A tick `period` [s] after the last tick.
   void tick(double period) {
@@ -85,14 +89,8 @@ class Driven {
       if (first_ && own < rate) seconds_since_call_ = 1.0 / own;
       if (own >= rate || first_ || error <= later) call(seconds_since_call_);
     }
-    past_.push_back(command);
-    if (past_.size() > lag + 1) past_.pop_front();
-    for (std::size_t i = 0; i < kDof && !held; ++i) {
-      if (std::isnan(past_.front()[i])) continue;
-      const double next = past_.front()[i] + offset;
-      measured_velocity[i] = (next - q[i]) / period;
-      q[i] = next;
-    }
+    if (state == Lifecycle::kActive && !soft_limits.empty()) limit_softly(period);
+    move(period);
   }
   void tick(int count) {
     for (int i = 0; i < count; ++i) tick();
@@ -136,20 +134,52 @@ class Driven {
   Joints q;
   Joints command{};
   Joints velocity{};
+  Joints torque{};
   Joints measured_velocity{};
-  std::array<Lock, 2 * kDof> command_locks{};
+  std::array<Lock, 3 * kDof> command_locks{};
   std::array<Lock, 2 * kDof> state_locks{};
   double offset = 0.0;  ///< Offset of each joint from its command [rad].
   std::size_t lag = 0;  ///< [ticks]
   bool held = false;    ///< Whether a person holds the arm.
   bool watched = true;
+  /// Soft limits that the manager enforces on positions; empty: the manager enforces none.
+  std::vector<joint_limits::SoftJointLimits> soft_limits;
+  int enforced = 0;  ///< Number of ticks in which the manager changed a position.
   std::int64_t calls = 0;
   long allocated = 0;
   double excess = -1e9;               ///< Excess over a bound on position or velocity [rad, rad/s].
   double acceleration_excess = -1.0;  ///< Relative to the bound.
   double jerk_excess = -1.0;          ///< Relative to the bound.
+  double effort_ratio = 0.0;          ///< Largest torque relative to the effort; infinite if a torque is NaN.
+
+ protected:
+  /// Moves the joints for `period` [s].
+  virtual void move(double period) {
+    past_.push_back(soft_limits.empty() ? command : limited_);
+    if (past_.size() > lag + 1) past_.pop_front();
+    for (std::size_t i = 0; i < kDof && !held; ++i) {
+      if (std::isnan(past_.front()[i])) continue;
+      const double next = past_.front()[i] + offset;
+      measured_velocity[i] = (next - q[i]) / period;
+      q[i] = next;
+    }
+  }
 
  private:
+  /// The soft limiter of ros2_control 6.8 for positions.
+  void limit_softly(double period) {
+    bool changed = false;
+    for (std::size_t i = 0; i < kDof; ++i) {
+      const auto& soft = soft_limits[i];
+      const double before = std::isnan(limited_[i]) ? q[i] : limited_[i];
+      const double most = limits_.velocity(static_cast<Eigen::Index>(i));
+      const double low = std::clamp(-soft.k_position * (before - soft.min_position), -most, most);
+      const double high = std::clamp(-soft.k_position * (before - soft.max_position), -most, most);
+      limited_[i] = std::clamp(command[i], before + low * period, before + high * period);
+      changed = changed || std::abs(limited_[i] - command[i]) > 1e-9;
+    }
+    enforced += changed ? 1 : 0;
+  }
   static void good(bool is_good, const char* what) {
     if (!is_good) throw std::runtime_error(what);
   }
@@ -167,7 +197,7 @@ class Driven {
   }
 
   /// Calls the controller `seconds` [s] after the last call. If a locked interface leaves the command of a joint
-  /// unchanged, the differences omit this call for this joint.
+  /// unchanged, the joint is at rest after this call.
   void call(double seconds) {
     ++calls;
     const int refusals_before = refusals;
@@ -177,8 +207,14 @@ class Driven {
     good(result == controller_interface::return_type::OK, "update");
     const bool refused = refusals != refusals_before;
     for (std::size_t i = 0; i < kDof; ++i) {
-      if ((refused || refused_before_) && command[i] == last_[i]) continue;
+      if ((refused || refused_before_) && command[i] == last_[i]) {
+        last_velocity_[i] = last_acceleration_[i] = 0.0;
+        continue;
+      }
       const auto joint = limits_.joint(static_cast<Eigen::Index>(i));
+      effort_ratio = std::max(effort_ratio, std::abs(torque[i]) / joint.effort);
+      if (std::isnan(torque[i])) effort_ratio = std::numeric_limits<double>::infinity();
+      if (std::isnan(command[i])) continue;  // Commands without positions.
       const double v = (command[i] - last_[i]) / seconds;
       const double a = (v - last_velocity_[i]) / seconds;
       const double j = (a - last_acceleration_[i]) / seconds;
@@ -200,6 +236,11 @@ class Driven {
   JointLimits limits_;
   std::deque<Joints> past_;
   Joints last_{};
+  Joints limited_ = [] {
+    Joints none;
+    none.fill(std::numeric_limits<double>::quiet_NaN());
+    return none;
+  }();
   Joints last_velocity_{};
   Joints last_acceleration_{};
   bool refused_before_ = false;

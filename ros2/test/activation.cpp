@@ -1,5 +1,7 @@
 #include <cmath>
+#include <hardware_interface/component_parser.hpp>
 #include <limits>
+#include <string>
 
 #include "check.hpp"
 #include "tests.hpp"
@@ -81,6 +83,41 @@ void unusable() {
   check(robot.activate(), "activated once all can be read", 1);
 }
 
+/// The manager enforces soft limits 0.3 rad inside of the ranges, which a stream of targets reaches.
+void soft_limits() {
+  for (const double k : {4.0, 20.0, 100.0}) {
+    Robot robot;
+    const std::string what = "soft limits, k_position " + std::to_string(static_cast<int>(k)) + ": ";
+    auto& described = stand_in::hardware()["panda"];
+    for (const auto& joint : fpbm::presets::panda().joints) {
+      joint_limits::SoftJointLimits soft;
+      soft.min_position = joint.bounds.lower + 0.3;
+      soft.max_position = joint.bounds.upper - 0.3;
+      soft.k_position = k;
+      described.soft_limits[joint.name] = soft;
+      robot.soft_limits.push_back(soft);
+    }
+    check(robot.load() && robot.activate(), (what + "activated").c_str(), 1);
+    stand_in::hardware().clear();
+    const Transform<> start = robot.tip();
+    double nearest = 1.0;
+    for (int i = 0; i < 6000; ++i) {
+      Transform<> pose = start;
+      pose.p += fpbm::Vector<3>(0.3, 0.4, 0.5) * std::sin(2e-3 * i);
+      pose.R = fpbm::rotation(fpbm::Vector<3>(0.0, 0.0, 2.5 * std::sin(1.5e-3 * i))) * pose.R;
+      if (i % 20 == 0) robot.hear("~/target_pose", pose_message(pose));
+      robot.tick();
+      for (std::size_t j = 0; j < Robot::kDof; ++j) {
+        const auto& soft = robot.soft_limits[j];
+        nearest = std::min({nearest, robot.command[j] - soft.min_position, soft.max_position - robot.command[j]});
+      }
+    }
+    check(nearest < 0.1, (what + "smallest distance from a soft limit [rad]").c_str(), nearest);
+    check(robot.enforced == 0, (what + "ticks in which the manager changed a command").c_str(), robot.enforced);
+    check(robot.jerk_excess < 1e-3, (what + "ratio of the jerk excess to the limit").c_str(), robot.jerk_excess);
+  }
+}
+
 }  // namespace
 
 void activation() {
@@ -88,4 +125,5 @@ void activation() {
   lag();
   moving();
   unusable();
+  soft_limits();
 }

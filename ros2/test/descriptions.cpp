@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fpbm/model/coupled_arm.hpp>
+#include <hardware_interface/component_parser.hpp>
 #include <string>
 #include <vector>
 
@@ -229,14 +230,25 @@ void limits() {
   limit.has_velocity_limits = limit.has_acceleration_limits = true;
   limit.max_velocity = 0.25;
   limit.max_acceleration = 1.5;
-  controlled.description.hard_joint_limits["panda_joint4"] = limit;
+  stand_in::hardware()["robot"].limits["panda_joint4"] = limit;
   check(controlled.configure(), "limits of ros2_control: configured", 1);
-  const std::string log = stand_in::log;
+  stand_in::hardware().clear();
   check(logged("velocity 0.25 (ros2_control), acceleration 1.5 (ros2_control)"), "limits of ros2_control: in the log",
         1);
   Controller wider(panda);
   stand_in::parameters.limits.velocity.assign(7, 2.0);
   check(wider.configure() && logged("velocity 0.5 (robot_description)"), "limits.velocity never widen", 1);
+
+  limit.min_position = -1e-3;  // A tag without limits, on a description without a velocity.
+  limit.has_velocity_limits = true;
+  limit.max_velocity = 0.0;
+  limit.has_effort_limits = true;
+  limit.has_acceleration_limits = false;
+  stand_in::hardware()["robot"].limits["panda_joint4"] = limit;
+  Controller zero(panda);
+  check(zero.configure() && logged("velocity 0.5 (robot_description), acceleration 12.5 (preset)"),
+        "velocity and effort 0 of ros2_control: not limits", 1);
+  stand_in::hardware().clear();
 
   Given no_preset = given("panda");
   no_preset.arm = "";

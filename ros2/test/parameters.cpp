@@ -34,6 +34,17 @@ void parameters() {
         "timeout");
   given("target.velocty: 0.1", {{"target.velocty", ParameterValue(0.1)}}, false, "target.velocty");
   given("target.velocty: 1", {{"target.velocty", ParameterValue(1)}}, false, "target.velocty");
+  given("target_velocity: 0.1", {{"target_velocity", ParameterValue(0.1)}}, false, "give target.velocity");
+  given("Tip_Frame: hand", {{"Tip_Frame", ParameterValue(std::string("hand"))}}, false, "give tip_frame");
+  given("limits.position: 1", {{"limits.position", ParameterValue(1)}}, false, "limits.position");
+  // The manager forwards its parameter file to all controllers, with the parameters under /**.
+  const std::string text = "<robot name='panda'/>";
+  given("robot_description under /**", {{"robot_description", ParameterValue(text)}}, true, "robot_description");
+  given("parameters of other nodes under /**",
+        {{"robot_ip", ParameterValue(std::string("172.16.0.2"))},
+         {"hardware.timeout", ParameterValue(1)},
+         {"arm_id", ParameterValue(std::string("fr3"))}},
+        true, "arm_id, hardware.timeout, robot_ip");
   given("tip_rate: fast", {{"tip_rate", ParameterValue(std::string("fast"))}}, false, "tip_rate");
   given("use_sim_time: true, type: ...",
         {{"use_sim_time", ParameterValue(true)},

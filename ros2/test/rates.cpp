@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <random>
 #include <string>
 
 #include "check.hpp"
@@ -28,6 +29,7 @@ void turn(Robot& robot, const Transform<>& start, double t) {
   robot.hear("~/target_pose", pose_message(turned * start));
 }
 
+/// A rate of the controller that is valid, or is refused with an error that names the nearest rates.
 void rate(unsigned int manager, int own, bool valid, const std::string& nearest) {
   Robot robot;
   robot.rate = manager;
@@ -36,7 +38,7 @@ void rate(unsigned int manager, int own, bool valid, const std::string& nearest)
   const std::string what = std::to_string(own) + " Hz of " + std::to_string(manager) + " Hz: ";
   const bool loaded = robot.load({{"update_rate", rclcpp::ParameterValue(own)}});
   check(loaded == valid, (what + (valid ? "configured" : "refused")).c_str(), loaded);
-  if (!valid) check(logged(nearest), (what + "named " + nearest).c_str(), 1);
+  if (!valid) check(logged(nearest), (what + "nearest rates named").c_str(), 1);
   if (!loaded) return;
   (void)robot.activate();
   const Transform<> start = robot.tip();
@@ -76,6 +78,43 @@ void calls_too_soon() {
   check(fastest > 0.9 && fastest < 1.0, "calls too soon: mean velocity in 50 ms, of its bound", fastest);
 }
 
+/// Calls at 1.5 to 30 times the update rate, and at a rate that is 0.3 % too high: by the clock of the calls, the
+/// commands keep the bounds on acceleration.
+void by_the_clock() {
+  Robot robot;
+  robot.watched = false;
+  check(robot.load() && robot.activate(), "calls too soon, by the clock: activated", 1);
+  const auto& bounds = stand_in::parameters.limits.acceleration;
+  const Transform<> start = robot.tip();
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> jitter(0.03e-3, 0.7e-3);
+  Robot::Joints before{};
+  Robot::Joints velocity{};
+  double last_period = 0.0;
+  double t = 0.0;
+  double largest = 0.0;
+  double fastest = 0.0;
+  for (int i = 0; i < 8000; ++i) {
+    const double period = i < 4000 ? 0.997e-3 : jitter(random);
+    Transform<> pose = start;
+    pose.p += fpbm::Vector<3>(0.05, 0.15, 0.1) * std::sin(4.0 * t);
+    if (i % 10 == 0) robot.hear("~/target_pose", pose_message(pose));
+    robot.tick(period);
+    t += period;
+    for (std::size_t j = 0; j < Robot::kDof; ++j) {
+      const double v = (robot.command[j] - before[j]) / period;
+      const double a = (v - velocity[j]) / (0.5 * (period + last_period));
+      if (i > 2) largest = std::max(largest, std::abs(a) / bounds[j]);
+      if (i > 2) fastest = std::max(fastest, std::abs(v));
+      before[j] = robot.command[j];
+      velocity[j] = v;
+    }
+    last_period = period;
+  }
+  check(fastest > 0.3 && largest < 1.001, "calls too soon, by the clock: acceleration, of its bound", largest);
+  check(robot.allocated == 0, "calls too soon, by the clock: allocations", static_cast<double>(robot.allocated));
+}
+
 }  // namespace
 
 void rates() {
@@ -83,9 +122,15 @@ void rates() {
   rate(1000, 500, true, "");
   rate(500, 100, true, "");
   rate(50, 20, false, "10 or 25");
+  rate(100, 60, false, "give 50 or 100");
+  rate(100, 70, false, "give 50 or 100");
+  rate(1000, 501, false, "give 500 or 1000");
+  rate(50, 200, false, "give 50\n");
+  rate(100, 0, false, "give 100\n");
   rate(100, 40, false, "25 or 50");
   rate(1000, 300, false, "250 or 500");
   calls_too_soon();
+  by_the_clock();
 
   Robot robot;
   const bool loaded = robot.load({{"is_async", rclcpp::ParameterValue(true)}});

@@ -141,16 +141,10 @@ void targets() {
 }
 
 int main(int count, char** names) {
-  const std::pair<const char*, void (*)()> tests[] = {{"targets", targets},
-                                                      {"locks", locks},
-                                                      {"rates", rates},
-                                                      {"activation", activation},
-                                                      {"descriptions", descriptions},
-                                                      {"topics", topics},
-                                                      {"parameters", parameters},
-                                                      {"two_arms", two_arms},
-                                                      {"grasp", grasp},
-                                                      {"tasks", tasks}};
+  const std::pair<const char*, void (*)()> tests[] = {
+      {"targets", targets},           {"locks", locks},     {"rates", rates},   {"activation", activation},
+      {"descriptions", descriptions}, {"efforts", efforts}, {"topics", topics}, {"parameters", parameters},
+      {"two_arms", two_arms},         {"grasp", grasp},     {"tasks", tasks},   {"wording", wording}};
   for (const auto& [name, test] : tests) {
     const bool named =
         std::any_of(names + 1, names + count, [own = name](const char* given) { return std::strcmp(own, given) == 0; });

@@ -13,6 +13,8 @@ void rates();
 void activation();
 /// Arms and limits from robot_description, with every preset, with presets of other arms, and with a mimic joint.
 void descriptions();
+/// The command interface effort: a simulated arm with other masses, feed-forward torques, faults, and refusals.
+void efforts();
 /// Subscriptions, stamps, and the lifecycle of the node.
 void topics();
 /// Parameters with values of other types, misspelt names, and numbers that are not finite.
@@ -23,3 +25,5 @@ void two_arms();
 void grasp();
 /// Tasks that the controller accepts or rejects.
 void tasks();
+/// The texts of errors, warnings and diagnostics.
+void wording();

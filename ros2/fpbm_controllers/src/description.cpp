@@ -4,11 +4,8 @@
 #include <memory>
 #include <stdexcept>
 #include <vector>
-#if __has_include(<urdf/model.hpp>)
-#include <urdf/model.hpp>
-#else
-#include <urdf/model.h>
-#endif
+
+#include "fpbm_controllers/urdf_model.hpp"
 
 namespace fpbm_controllers {
 
@@ -31,11 +28,6 @@ namespace {
   return joints;
 }
 
-[[nodiscard]] fpbm::Transform<> origin_of(const urdf::Joint& joint) {
-  const auto& [p, q] = joint.parent_to_joint_origin_transform;
-  return {{p.x, p.y, p.z}, fpbm::rotation(fpbm::Vector<4>(q.w, q.x, q.y, q.z))};
-}
-
 [[nodiscard]] fpbm::JointType type_of(const urdf::Joint& joint) {
   switch (joint.type) {
     case urdf::Joint::REVOLUTE: return fpbm::JointType::kRevolute;
@@ -53,6 +45,7 @@ namespace {
   joint.name = described.name;
   if (described.limits) {
     if (described.limits->velocity != 0.0) joint.bounds.velocity = described.limits->velocity;  // 0: not given.
+    if (described.limits->effort > 0.0) joint.bounds.effort = described.limits->effort;
     if (joint.type != fpbm::JointType::kContinuous) {
       joint.bounds.lower = described.limits->lower;
       joint.bounds.upper = described.limits->upper;
@@ -76,10 +69,7 @@ namespace {
 
 fpbm::Tree<> tree_of(const std::string& robot_description, const std::string& base,
                      const std::vector<NamedLink>& links) {
-  urdf::Model model;
-  if (robot_description.empty() || !model.initString(robot_description)) {
-    throw std::invalid_argument("robot_description: is missing, or is not a URDF: publish the robot's URDF");
-  }
+  const urdf::Model model = model_of(robot_description);
   const auto to_base = joints_to(model, {"base_frame", base});
   fpbm::Tree<> tree;
   std::vector<std::shared_ptr<const urdf::Joint>> moving;  // The joints of the tree.

@@ -89,9 +89,9 @@ class StackMotion final : public Motion {
     fpbm::require_stable(scheme_from(Joints::Zero(tasks_.dof())), tick);
   }
 
-  void begin(const Joints& q) override {
+  void begin(const Joints& q, const Joints& rest) override {
     const fpbm::State<kDof> start{q, Joints::Zero(q.size())};
-    tracker_.emplace(tasks_, Space{}, scheme_from(q), start, options_, limits_);
+    tracker_.emplace(tasks_, Space{}, scheme_from(rest), start, options_, limits_);
     held_ = Reference::hold(tracker_->tip());
     for (const Part& part : parts_) {
       at_place(part.place, [&](auto i, int) noexcept {
@@ -131,6 +131,8 @@ class StackMotion final : public Motion {
 
   [[nodiscard]] const fpbm::State<kDof>& state() const noexcept override { return tracker_->state(); }
 
+  [[nodiscard]] const Joints& acceleration() const noexcept override { return tracker_->acceleration(); }
+
   void locate(Report& report) const noexcept override {
     const Stack::Point at = tracker_->tip();
     for (const Part& part : parts_) {
@@ -156,8 +158,8 @@ class StackMotion final : public Motion {
     return parts;
   }
 
-  [[nodiscard]] Scheme scheme_from(const Joints& start) const {
-    return Scheme(fpbm::Balanced<kDof>(scheme_.alpha, scheme_.weights, null_space_of(scheme_, start)));
+  [[nodiscard]] Scheme scheme_from(const Joints& rest) const {
+    return Scheme(fpbm::Balanced<kDof>(scheme_.alpha, scheme_.weights, null_space_of(scheme_, rest)));
   }
 
   /// The references of all tasks at a time in the next tick [s]; the references of empty places are held.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <pluginlib/class_list_macros.hpp>
 #include <stdexcept>
 
@@ -23,6 +24,14 @@ namespace {
     for (const auto& joint : joints) configuration.names.emplace_back(joint).append("/").append(type);
   }
   return configuration;
+}
+
+/// The first of the joints whose bits are set.
+[[nodiscard]] std::optional<std::size_t> first_of(fpbm::JointBits joints) {
+  if (joints == 0) return std::nullopt;
+  std::size_t first = 0;
+  while ((joints >> first & 1U) == 0) ++first;
+  return first;
 }
 
 }  // namespace
@@ -84,13 +93,20 @@ CallbackReturn TargetController::on_error(const rclcpp_lifecycle::State&) {
 /// Constructs only objects of fixed size within the controller: the loop of the manager may call this function.
 CallbackReturn TargetController::on_activate(const rclcpp_lifecycle::State&) {
   try {
-    motion_->begin(start());
+    start_ = start();
+    motion_->begin(start_, start_);
   } catch (const std::exception& error) {  // For example, a joint is outside its limits.
     RCLCPP_ERROR(get_node()->get_logger(), "%s", error.what());
     return CallbackReturn::FAILURE;
   }
   pace_ = Pace(dt_);
-  for (std::size_t k = 0; k < tasks_.size(); ++k) seen_[k] = topics_->exchange().tasks[k].target.get().count;
+  command_ = motion_->state();
+  accepted_ = start_;
+  for (std::size_t k = 0; k < tasks_.size(); ++k) {
+    newest_[k] = Target{};
+    newest_stamp_[k] = 0.0;
+    seen_[k] = topics_->exchange().tasks[k].target.get().count;
+  }
   locked_for_ = 0;
   report_ = Report{};
   return CallbackReturn::SUCCESS;
@@ -104,19 +120,22 @@ TargetController::Joints TargetController::start() {
     if (!good) throw std::runtime_error("joint '" + params_.joints[joint] + "': " + what);
   };
   const std::size_t dof = params_.joints.size();
-  measured_ = Joints::Zero(robot_->dof());
-  if (const auto joint = measure()) require(false, *joint, "its position is locked by another thread: activate again");
+  measured_ = measured_velocity_ = Joints::Zero(robot_->dof());
+  if (const auto joint = measure()) require(false, *joint, "its state is locked by another thread: activate again");
   Joints q = measured_;
   bool follows = true;
   for (std::size_t k = 0; k < dof; ++k) {
     const auto i = static_cast<Eigen::Index>(k);
     require(std::isfinite(measured_(i)), k, "its position is not a number: check the hardware, then activate again");
-    const std::optional<double> last = command_interfaces_[k].get_optional();
-    require(last.has_value(), k, "its command is locked by another thread: activate again");
-    follows = follows && std::isfinite(*last) && std::abs(difference(i, *last, q(i))) < params_.following_error;
-    if (follows) q(i) = *last;
+    if (has_positions()) {
+      const std::optional<double> last = command_interfaces_[k].get_optional();
+      require(last.has_value(), k, "its command is locked by another thread: activate again");
+      follows = follows && std::isfinite(*last) && std::abs(difference(i, *last, q(i))) < params_.following_error;
+      if (follows) q(i) = *last;
+    }
     if (state_interfaces_.size() == dof) continue;
     const double velocity = state_interfaces_[dof + k].get_optional().value_or(0.0);
+    require(std::isfinite(velocity), k, "its velocity is not a number: check the hardware, then activate again");
     require(std::abs(velocity) <= limits_->bounds().acceleration(i) * dt_, k,
             "moves too fast to stop within a tick: activate when the arm is at rest");
   }
@@ -131,39 +150,36 @@ TargetController::Joints TargetController::start() {
   return q;
 }
 
-/// The arm stays at the last command. A joint with a locked command interface keeps its previous command.
+/// The arm stays at the last command. As with the controllers of ros2_controllers, velocities and torques become 0. A
+/// joint with a locked command interface keeps its previous command.
 CallbackReturn TargetController::on_deactivate(const rclcpp_lifecycle::State&) {
   topics_->exchange().report.set(Report{});
-  const Joints& q = motion_->state().q;
-  if (const auto joint = command(q, Joints::Zero(q.size()))) {
+  command_.qd.setZero();
+  if (const auto joint = write(command_.qd)) {
     RCLCPP_WARN(get_node()->get_logger(), "joint '%s': its command is locked by another thread, and stays unchanged",
                 params_.joints[*joint].c_str());
   }
   return CallbackReturn::SUCCESS;
 }
 
-/// Executes at most one tick per call. Each tick has the length for which the limits were made: late calls delay the
-/// arm.
-///
 /// An interface that another thread has locked is not an error: after an error, the controller manager would deactivate
-/// the controller in motion. The arm waits until all joints have accepted a command. If the wait is too long, the
-/// motion restarts at rest at the last command, and the arm stops. If readings stay locked, the last reading deviates
-/// more and more from the command, and the arm stops.
+/// the controller in motion. The arm waits at the positions that the joints have accepted until no interface is locked,
+/// and then starts from rest. If the wait is too long, the arm stops. With torques alone, an arm cannot wait in motion:
+/// a locked joint keeps its previous torque. If readings stay locked, the last reading deviates more and more from the
+/// command, and the arm stops.
 return_type TargetController::update(const rclcpp::Time& time, const rclcpp::Duration& period) {
-  if (!pace_.due(period.seconds())) {
-    ++report_.early;
-    return return_type::OK;
-  }
   take_messages();
   const bool read = !measure();
   compare();
-  if (locked_for_ == 0) motion_->tick(report_);
-  const auto locked = command(motion_->state().q, motion_->state().qd);
+  const fpbm::State<kDof> before = command_;
+  const bool waits = locked_for_ > 0 && has_positions();
+  if (!waits) advance(period.seconds());
+  if (torque_) set_torques(before, waits ? Joints(Joints::Zero(before.q.size())) : motion_->acceleration());
+  const auto locked = write(torque_ ? torque_->torque() : command_.qd);
   locked_for_ = locked ? locked_for_ + 1 : 0;
-  if (locked_for_ == kLongestLock) {
-    motion_->begin(Joints(motion_->state().q));
-    stop(Fault::kLocked, *locked);
-  }
+  if (locked_for_ == kLongestLock) stop(Fault::kLocked, *locked);
+  if (locked && has_positions()) command_ = {accepted_, Joints::Zero(accepted_.size())};
+  if (!locked && waits) restart();
   if (locked || !read) ++report_.missed;
   report_.active = true;
   report_.time = time;
@@ -181,21 +197,55 @@ void TargetController::take_messages() noexcept {
     const std::optional<Target> target = topics_->exchange().tasks[k].target.try_get();
     if (!target || target->count == seen_[k]) continue;
     seen_[k] = target->count;
-    if (!motion_->push(k, *target)) ++report_.tasks[k].rejected;
+    if (motion_->push(k, *target)) {
+      newest_[k] = *target;
+      if (target->stamp != 0.0) newest_stamp_[k] = target->stamp;
+    } else {
+      ++report_.tasks[k].rejected;
+      report_.tasks[k].ahead = target->stamp > newest_stamp_[k];
+    }
+  }
+}
+
+void TargetController::advance(double period) noexcept {
+  if (pace_.starts(period)) {
+    tick_start_ = motion_->state();
+    motion_->tick(report_);
+  } else {
+    ++report_.early;
+  }
+  command_ = motion_->state();
+  if (!(pace_.left() > 0.0)) return;
+  const double t = dt_ - pace_.left();
+  const Joints& acceleration = motion_->acceleration();
+  command_.q = tick_start_.q + t * tick_start_.qd + t * t / 2.0 * acceleration;
+  command_.qd = tick_start_.qd + t * acceleration;
+}
+
+void TargetController::restart() {
+  motion_->begin(command_.q, start_);
+  pace_ = Pace(dt_);
+  if (report_.fault != Fault::kNone) motion_->stop();
+  for (std::size_t k = 0; k < tasks_.size(); ++k) {
+    Target again = newest_[k];
+    again.stamp = 0.0;
+    if (again.count > 0 && !again.moves) (void)motion_->push(k, again);
   }
 }
 
 std::optional<std::size_t> TargetController::measure() {
-  std::optional<std::size_t> unread;
-  for (std::size_t k = params_.joints.size(); k-- > 0;) {
-    const std::optional<double> value = state_interfaces_[k].get_optional();
-    if (value) {
-      measured_(static_cast<Eigen::Index>(k)) = *value;
-    } else {
-      unread = k;
+  const auto read = [this](std::size_t first, Joints& readings) {
+    fpbm::JointBits unread = 0;
+    for (Eigen::Index i = 0; i < readings.size(); ++i) {
+      const std::optional<double> value = state_interfaces_[first + static_cast<std::size_t>(i)].get_optional();
+      if (!value) unread |= fpbm::joint_bit(i);
+      readings(i) = value.value_or(readings(i));
     }
-  }
-  return unread;
+    return unread;
+  };
+  unread_positions_ = read(0, measured_);
+  if (has_feedback()) unread_velocities_ = read(params_.joints.size(), measured_velocity_);
+  return first_of(unread_positions_ | unread_velocities_);
 }
 
 double TargetController::difference(Eigen::Index i, double a, double b) const noexcept {
@@ -206,7 +256,8 @@ void TargetController::compare() {
   double largest = 0.0;
   std::size_t joint = 0;
   for (Eigen::Index i = 0; i < measured_.size(); ++i) {
-    const double error = std::abs(difference(i, measured_(i), motion_->state().q(i)));
+    const double error = std::isfinite(measured_velocity_(i)) ? std::abs(difference(i, measured_(i), command_.q(i)))
+                                                              : std::numeric_limits<double>::quiet_NaN();
     if (!(error <= largest)) {
       largest = error;
       joint = static_cast<std::size_t>(i);
@@ -226,13 +277,33 @@ void TargetController::stop(Fault fault, std::size_t joint) noexcept {
   report_.fault_joint = joint;
 }
 
-std::optional<std::size_t> TargetController::command(const Joints& q, const Joints& qd) {
-  const auto dof = static_cast<std::size_t>(q.size());
+void TargetController::set_torques(const fpbm::State<kDof>& commanded, const Joints& acceleration) noexcept {
+  fpbm::State<kDof> measured = commanded;
+  const auto is_read = [](fpbm::JointBits unread, Eigen::Index i, double value) {
+    return (unread & fpbm::joint_bit(i)) == 0 && std::isfinite(value);
+  };
+  for (Eigen::Index i = 0; i < measured_.size(); ++i) {
+    if (is_read(unread_positions_, i, measured_(i))) measured.q(i) += difference(i, measured_(i), commanded.q(i));
+    if (is_read(unread_velocities_, i, measured_velocity_(i))) measured.qd(i) = measured_velocity_(i);
+  }
+  if (const auto limited = first_of(torque_->tick(commanded, acceleration, measured))) {
+    ++report_.limited;
+    report_.limited_joint = *limited;
+  }
+}
+
+std::optional<std::size_t> TargetController::write(const Joints& torque) {
   std::optional<std::size_t> locked;
-  for (std::size_t k = 0; k < command_interfaces_.size(); ++k) {
-    const std::size_t joint = k % dof;
-    const Joints& values = k < dof ? q : qd;  // Positions are first: see read_parameters().
-    if (!command_interfaces_[k].set_value(values(static_cast<Eigen::Index>(joint)))) locked = joint;
+  auto interface = command_interfaces_.begin();
+  for (const std::string& type : params_.command_interfaces) {
+    const Joints& values = type == "position" ? command_.q : type == "velocity" ? command_.qd : torque;
+    for (Eigen::Index i = 0; i < values.size(); ++i) {
+      if (!(interface++)->set_value(values(i))) {
+        locked = static_cast<std::size_t>(i);
+      } else if (type == "position") {
+        accepted_(i) = values(i);
+      }
+    }
   }
   return locked;
 }

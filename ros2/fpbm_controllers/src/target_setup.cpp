@@ -1,22 +1,13 @@
 #include <algorithm>
 #include <cmath>
-#include <fpbm/model/presets.hpp>
 #include <stdexcept>
 
 #include "fpbm_controllers/description.hpp"
-#include "fpbm_controllers/sourced_limits.hpp"
 #include "fpbm_controllers/target_controller.hpp"
 
 namespace fpbm_controllers {
 
 namespace {
-
-[[nodiscard]] fpbm::Chain<> preset(const std::string& name) {
-  for (const auto& arm : fpbm::presets::kAll) {
-    if (name == arm.name) return arm.chain();
-  }
-  throw std::invalid_argument("arm: is '" + name + "': must be a preset: correct the name");
-}
 
 /// Roll, pitch and yaw about the fixed axes x, y and z, as in a URDF.
 [[nodiscard]] fpbm::Transform<> transform(const std::vector<double>& xyz, const std::vector<double>& rpy) {
@@ -26,16 +17,6 @@ namespace {
   result.R = fpbm::rotation(Vector(0.0, 0.0, rpy.at(2))) * fpbm::rotation(Vector(0.0, rpy.at(1), 0.0)) *
              fpbm::rotation(Vector(rpy.at(0), 0.0, 0.0));
   return result;
-}
-
-[[nodiscard]] fpbm::Vector<Eigen::Dynamic> vector_of(const char* name, const std::vector<double>& values,
-                                                     Eigen::Index dof) {
-  const Eigen::Map<const Eigen::VectorXd> vector(values.data(), static_cast<Eigen::Index>(values.size()));
-  if (vector.size() != dof || !vector.allFinite()) {
-    throw std::invalid_argument(std::string(name) + ": has " + std::to_string(values.size()) + " entries: must be " +
-                                std::to_string(dof) + " finite numbers, one for each joint");
-  }
-  return vector;
 }
 
 /// Throws if the joints of the parameters are not the driven joints of the tree.
@@ -55,10 +36,57 @@ void require_joints(const std::vector<std::string>& given, const fpbm::Tree<>& t
                               " in robot_description between base_frame and the frames: give [" + list + "]");
 }
 
-/// Whether a link is the end of an arm, because the link carries no joint of the tree.
-[[nodiscard]] bool is_end(const fpbm::Tree<>& tree, int link) {
-  return link > 0 &&
-         std::none_of(tree.joints.begin(), tree.joints.end(), [link](const auto& each) { return each.parent == link; });
+/// A message of the library with the names of the parameters.
+[[nodiscard]] std::string with_names_of_ros(std::string message) {
+  const std::string own = "null_stiffness";
+  for (auto at = message.find(own); at != std::string::npos; at = message.find(own)) {
+    message.replace(at, own.size(), "rest_stiffness");
+  }
+  return message;
+}
+
+/// Throws, with the whole name of the parameter, if a number is not finite. The lists of joints are checked elsewhere.
+void require_finite(const target_controller::Params& params) {
+  const auto require = [](const std::string& name, double value) {
+    if (!std::isfinite(value)) {
+      throw std::invalid_argument(name + ": is " + std::to_string(value) + ": must be finite");
+    }
+  };
+  const auto& scheme = params.scheme;
+  const auto& target = params.target;
+  const std::pair<const char*, double> numbers[] = {{"following_error", params.following_error},
+                                                    {"tip_rate", params.tip_rate},
+                                                    {"diagnostics_rate", params.diagnostics_rate},
+                                                    {"scheme.alpha", scheme.alpha},
+                                                    {"scheme.k1", scheme.k1},
+                                                    {"scheme.k2", scheme.k2},
+                                                    {"scheme.null_damping", scheme.null_damping},
+                                                    {"scheme.rest_stiffness", scheme.rest_stiffness},
+                                                    {"target.velocity", target.velocity},
+                                                    {"target.acceleration", target.acceleration},
+                                                    {"target.jerk", target.jerk},
+                                                    {"target.angular_velocity", target.angular_velocity},
+                                                    {"target.angular_acceleration", target.angular_acceleration},
+                                                    {"target.angular_jerk", target.angular_jerk},
+                                                    {"target.timeout", target.timeout}};
+  for (const auto& [name, value] : numbers) require(name, value);
+  for (const auto& [name, task] : params.task.tasks_map) {
+    require("task." + name + ".k1", task.k1);
+    require("task." + name + ".k2", task.k2);
+  }
+  for (const double value : params.tool.xyz) require("tool.xyz", value);
+  for (const double value : params.tool.rpy) require("tool.rpy", value);
+}
+
+/// Throws unless velocities are only with positions, and all are in the order position, velocity, effort.
+void require_commands(const std::vector<std::string>& given) {
+  using List = std::vector<std::string>;
+  const List accepted[] = {
+      {"position"}, {"position", "velocity"}, {"effort"}, {"position", "effort"}, {"position", "velocity", "effort"}};
+  if (std::find(std::begin(accepted), std::end(accepted), given) != std::end(accepted)) return;
+  throw std::invalid_argument(
+      "command_interfaces: must be [position], [position, velocity], or one of these with effort as the last, or "
+      "[effort]: correct the list");
 }
 
 }  // namespace
@@ -66,19 +94,10 @@ void require_joints(const std::vector<std::string>& given, const fpbm::Tree<>& t
 void TargetController::read_parameters() {
   params_ = listener_->get_params();
   const auto& target = params_.target;
-  const std::pair<const char*, double> numbers[] = {{"following_error", params_.following_error},
-                                                    {"tip_rate", params_.tip_rate},
-                                                    {"diagnostics_rate", params_.diagnostics_rate},
-                                                    {"target.timeout", target.timeout}};
-  for (const auto& [name, value] : numbers) {
-    if (!std::isfinite(value)) {
-      throw std::invalid_argument(std::string(name) + ": is " + std::to_string(value) + ": must be finite");
-    }
-  }
-  if (params_.command_interfaces.empty() || params_.command_interfaces[0] != "position" ||
-      params_.state_interfaces.empty() || params_.state_interfaces[0] != "position") {
-    throw std::invalid_argument(
-        "command_interfaces, state_interfaces: one list does not begin with position: put position first");
+  require_finite(params_);
+  require_commands(params_.command_interfaces);
+  if (params_.state_interfaces.empty() || params_.state_interfaces[0] != "position") {
+    throw std::invalid_argument("state_interfaces: does not begin with position: put position first");
   }
   require_rate();
 
@@ -102,7 +121,26 @@ void TargetController::read_parameters() {
   const fpbm::TargetBounds<> bounds{target.velocity,         target.acceleration,         target.jerk,
                                     target.angular_velocity, target.angular_acceleration, target.angular_jerk};
   const MotionSettings settings{tree, motion_tasks(tree), scheme(robot_->dof()), options, *limits_, bounds, filter};
-  motion_ = is_tip() && robot_->dof() >= fpbm::Pose::kRows ? make_tip_motion(settings) : make_stack_motion(settings);
+  try {
+    motion_ = is_tip() && robot_->dof() >= fpbm::Pose::kRows ? make_tip_motion(settings) : make_stack_motion(settings);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(with_names_of_ros(error.what()));
+  }
+  torque_.reset();
+  if (params_.command_interfaces.back() == "effort") torque_.emplace(computed_torque(tree));
+}
+
+TargetController::Joints TargetController::joint_numbers(const char* name, const std::vector<double>& values) const {
+  if (values.size() != params_.joints.size()) {
+    throw std::invalid_argument(std::string(name) + ": has " + std::to_string(values.size()) + " entries: must have " +
+                                std::to_string(params_.joints.size()) + ", one for each joint");
+  }
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (std::isfinite(values[k])) continue;
+    throw std::invalid_argument(std::string(name) + ": is " + std::to_string(values[k]) + " for joint '" +
+                                params_.joints[k] + "': must be finite");
+  }
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
 fpbm::Tree<> TargetController::described() const {
@@ -166,88 +204,27 @@ std::vector<MotionTask> TargetController::motion_tasks(const fpbm::Tree<>& tree)
 MotionScheme TargetController::scheme(Eigen::Index dof) const {
   const auto& given = params_.scheme;
   MotionScheme scheme{given.alpha, Joints::Ones(dof), given.null_damping, given.rest_stiffness, std::nullopt};
-  if (!given.weights.empty()) scheme.weights = vector_of("scheme.weights", given.weights, dof);
-  if (!given.rest_posture.empty()) scheme.rest_posture = vector_of("scheme.rest_posture", given.rest_posture, dof);
+  if (!given.weights.empty()) scheme.weights = joint_numbers("scheme.weights", given.weights);
+  if (!given.rest_posture.empty()) scheme.rest_posture = joint_numbers("scheme.rest_posture", given.rest_posture);
   return scheme;
 }
 
-/// The controller manager calls a controller in every n-th tick of the manager.
+/// The controller manager calls a controller in every n-th tick of the manager, and replaces other rates, without an
+/// error, by a rate near the given rate or by the rate of the manager. For the limits, the given rate must be the rate.
 void TargetController::require_rate() const {
   if (is_async())
     throw std::invalid_argument("is_async: must be false, since a write could mix the commands of two ticks");
-  const unsigned int own = get_update_rate();
-  if (own > 0 && manager_rate_ % own == 0) return;
-  const auto rate = static_cast<unsigned int>(get_node()->get_parameter("update_rate").as_int());
-  unsigned int below = std::min(std::max(rate, 1U), manager_rate_);
-  unsigned int above = below;
-  while (below > 1 && manager_rate_ % below != 0) --below;
-  while (above < manager_rate_ && manager_rate_ % above != 0) ++above;
-  throw std::invalid_argument("update_rate: " + std::to_string(rate) + " Hz does not divide the controller manager's " +
-                              std::to_string(manager_rate_) + " Hz: give " + std::to_string(below) + " or " +
-                              std::to_string(above));
-}
-
-TargetController::JointLimits TargetController::preset_limits(const fpbm::Tree<>& tree) const {
-  const fpbm::Chain<> known = preset(params_.arm);
-  JointLimits limits = JointLimits::none(robot_->dof());
-  for (const auto& [name, link, offset] : tree.frames) {
-    if (!is_end(tree, link)) continue;
-    require_match(chain_to(tree, link), name, params_.arm, known);
-    const std::vector<std::size_t> joints = joints_to(tree, link);
-    for (std::size_t k = 0; k < joints.size(); ++k) {
-      limits.set(static_cast<Eigen::Index>(joints[k]), known.joints[k].bounds);  // Each joint of the arm has a drive.
-    }
-  }
-  if (!params_.limits.acceleration.empty()) limits.acceleration = JointLimits::unbounded(robot_->dof());
-  if (!params_.limits.jerk.empty()) limits.jerk = JointLimits::unbounded(robot_->dof());
-  return limits;
-}
-
-TargetController::JointLimits TargetController::limits(const fpbm::Tree<>& tree) const {
-  const Eigen::Index dof = robot_->dof();
-  const auto& given = params_.limits;
-  SourcedLimits result(robot_->limits(), "robot_description");
-
-#if __has_include(<controller_interface/controller_interface_params.hpp>)  // Available from ros2_control 4.38 on.
-  JointLimits controlled = JointLimits::none(dof);
-  for (Eigen::Index i = 0; i < dof; ++i) {
-    const auto found = get_hard_joint_limits().find(params_.joints[static_cast<std::size_t>(i)]);
-    if (found == get_hard_joint_limits().end()) continue;
-    const auto& joint = found->second;
-    if (joint.has_position_limits) controlled.lower(i) = joint.min_position;
-    if (joint.has_position_limits) controlled.upper(i) = joint.max_position;
-    if (joint.has_velocity_limits) controlled.velocity(i) = joint.max_velocity;
-    if (joint.has_acceleration_limits) controlled.acceleration(i) = joint.max_acceleration;
-    if (joint.has_deceleration_limits) {
-      controlled.acceleration(i) = std::min(controlled.acceleration(i), joint.max_deceleration);
-    }
-    if (joint.has_jerk_limits) controlled.jerk(i) = joint.max_jerk;
-  }
-  result.narrow(controlled, "ros2_control");
-#endif
-
-  if (!params_.arm.empty()) result.narrow(preset_limits(tree), "preset");
-
-  JointLimits own = JointLimits::none(dof);
-  const auto take = [&](const char* name, const std::vector<double>& values, Joints& bound) {
-    if (!values.empty()) bound = vector_of(name, values, dof);
-  };
-  take("limits.lower", given.lower, own.lower);
-  take("limits.upper", given.upper, own.upper);
-  take("limits.velocity", given.velocity, own.velocity);
-  take("limits.acceleration", given.acceleration, own.acceleration);
-  take("limits.jerk", given.jerk, own.jerk);
-  result.narrow(own, "limits");
-
-  for (Eigen::Index i = 0; i < dof; ++i) {
-    const std::string& joint = params_.joints[static_cast<std::size_t>(i)];
-    if (!std::isfinite(result.limits().acceleration(i))) {
-      throw std::invalid_argument("limits.acceleration: joint '" + joint +
-                                  "' has no bound on its acceleration: give limits.acceleration, or a preset as arm");
-    }
-    RCLCPP_INFO(get_node()->get_logger(), "%s: %s", joint.c_str(), result.text(i).c_str());
-  }
-  return result.limits();
+  const auto manager = static_cast<std::int64_t>(manager_rate_);
+  const std::int64_t rate = get_node()->get_parameter("update_rate").as_int();
+  const bool in_range = 0 < rate && rate <= manager;
+  if (in_range && manager % rate == 0) return;
+  std::int64_t below = in_range ? rate : manager;
+  std::int64_t above = below;
+  while (manager % below != 0) --below;
+  while (manager % above != 0) ++above;
+  throw std::invalid_argument("update_rate: is " + std::to_string(rate) + " Hz: must divide the controller manager's " +
+                              std::to_string(manager) + " Hz: give " +
+                              (below == above ? "" : std::to_string(below) + " or ") + std::to_string(above));
 }
 
 }  // namespace fpbm_controllers

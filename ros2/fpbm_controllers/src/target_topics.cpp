@@ -47,13 +47,17 @@ void log_events(const Report& report, Exchange& exchange, const rclcpp::Logger& 
   for (std::size_t k = 0; k < exchange.names.size(); ++k) {
     const std::uint64_t rejected = report.tasks[k].rejected;
     if (rejected <= before.tasks[k].rejected) continue;
-    RCLCPP_WARN(logger,
-                "%s targets%s rejected: their stamps are not newer than earlier stamps. Check the sender's clock.",
-                std::to_string(rejected - before.tasks[k].rejected).c_str(), of_task(exchange.names[k]).c_str());
+    const std::uint64_t count = rejected - before.tasks[k].rejected;
+    RCLCPP_WARN(logger, "%s%s rejected: %s stamp is %s", counted(count, "target").c_str(),
+                of_task(exchange.names[k]).c_str(), count == 1 ? "its" : "the last",
+                rejected_message(report.tasks[k]).c_str());
   }
   if (report.missed > before.missed) {
-    RCLCPP_WARN(logger, "%s ticks with an interface that another thread had locked",
-                std::to_string(report.missed - before.missed).c_str());
+    RCLCPP_WARN(logger, "%s with an interface that another thread had locked",
+                counted(report.missed - before.missed, "tick").c_str());
+  }
+  if (report.limited > 0 && before.limited == 0) {
+    RCLCPP_WARN(logger, "%s", limited_message(report, exchange.joints).c_str());
   }
   exchange.logged = report;
 }

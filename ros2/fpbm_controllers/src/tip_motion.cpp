@@ -37,9 +37,9 @@ class TipMotion final : public Motion {
     }
   }
 
-  void begin(const Joints& q) override {
+  void begin(const Joints& q, const Joints& rest) override {
     const fpbm::State<kDof> start{q, Joints::Zero(q.size())};
-    tracker_.emplace(arm_, fpbm::Pose{}, scheme_from(q), start, options_, limits_);
+    tracker_.emplace(arm_, fpbm::Pose{}, scheme_from(rest), start, options_, limits_);
     (void)filter_.reset(tracker_->tip());
   }
 
@@ -59,11 +59,13 @@ class TipMotion final : public Motion {
 
   [[nodiscard]] const fpbm::State<kDof>& state() const noexcept override { return tracker_->state(); }
 
+  [[nodiscard]] const Joints& acceleration() const noexcept override { return tracker_->acceleration(); }
+
   void locate(Report& report) const noexcept override { report.tasks[0].at = tracker_->tip(); }
 
  private:
-  [[nodiscard]] Scheme scheme_from(const Joints& start) const {
-    return fpbm::FPBM<kDof>(scheme_.alpha, scheme_.weights, gains_.k1, gains_.k2, null_space_of(scheme_, start));
+  [[nodiscard]] Scheme scheme_from(const Joints& rest) const {
+    return fpbm::FPBM<kDof>(scheme_.alpha, scheme_.weights, gains_.k1, gains_.k2, null_space_of(scheme_, rest));
   }
 
   MotionScheme scheme_;

@@ -5,6 +5,8 @@
 #include <chrono>
 #include <controller_manager/controller_manager.hpp>
 #include <controller_manager_msgs/srv/switch_controller.hpp>
+#include <cstdio>
+#include <cstdlib>
 #include <future>
 #include <memory>
 #include <rclcpp/rclcpp.hpp>
@@ -64,14 +66,25 @@ class TargetController : public ::testing::Test {
     manager_.set_parameter({"targets.params_file", std::string(TEST_FOLDER) + "/" + parameters});
     return manager_.load_controller("targets", "fpbm_controllers/TargetController") != nullptr;
   }
-  /// The manager switches controllers in its loop, which this function runs.
+  /// Result of a function of the manager that waits for its loop, which is called meanwhile. If there is no result
+  /// within 2,000 ticks, the process ends, because a waiting function cannot be cancelled.
+  template <typename Function>
+  return_type in_loop(const Function& function) {
+    auto done = std::async(std::launch::async, function);
+    for (int ticks = 0; done.wait_for(std::chrono::milliseconds(10)) != std::future_status::ready; ++ticks) {
+      if (ticks == 2000) {
+        std::fprintf(stderr, "the controller manager still waits after %d ticks\n", ticks);
+        std::abort();
+      }
+      tick();
+    }
+    return done.get();
+  }
   return_type change(const std::vector<std::string>& activate, const std::vector<std::string>& deactivate) {
-    auto done = std::async(std::launch::async, [&] {
+    return in_loop([&] {
       return manager_.switch_controller(activate, deactivate,
                                         controller_manager_msgs::srv::SwitchController::Request::STRICT);
     });
-    while (done.wait_for(std::chrono::milliseconds(10)) != std::future_status::ready) tick();
-    return done.get();
   }
   void tick() {
     const rclcpp::Duration period(0, 10000000);
@@ -92,7 +105,7 @@ TEST_F(TargetController, is_activated_and_deactivated_again_and_again) {
     for (int k = 0; k < 20; ++k) tick();
     ASSERT_EQ(change({}, {"targets"}), return_type::OK);
   }
-  EXPECT_EQ(manager_.unload_controller("targets"), return_type::OK);
+  EXPECT_EQ(in_loop([&] { return manager_.unload_controller("targets"); }), return_type::OK);
 }
 
 TEST_F(TargetController, is_not_configured_as_another_arm) {

@@ -10,7 +10,6 @@
 #include <optional>
 #include <rclcpp/rclcpp.hpp>
 #include <string>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -183,9 +182,6 @@ class ControllerInterface {
   [[nodiscard]] unsigned int get_update_rate() const { return params_.update_rate; }
   [[nodiscard]] bool is_async() const { return async_; }
   [[nodiscard]] const std::string& get_robot_description() const { return params_.robot_description; }
-  [[nodiscard]] const std::unordered_map<std::string, joint_limits::JointLimits>& get_hard_joint_limits() const {
-    return params_.hard_joint_limits;
-  }
   std::shared_ptr<rclcpp_lifecycle::LifecycleNode> get_node() { return node_; }
   [[nodiscard]] std::shared_ptr<const rclcpp_lifecycle::LifecycleNode> get_node() const { return node_; }
 

@@ -1,11 +1,9 @@
 #pragma once
 
-#include <joint_limits/joint_limits.hpp>
 #include <string>
-#include <unordered_map>
 
-// Stands in for ros2_control's header of this name. Versions of ros2_control with get_hard_joint_limits() have this
-// header.
+// Stands in for ros2_control's header of this name. The manager gives limits only if the manager enforces limits, which
+// is not the default of Jazzy.
 namespace controller_interface {
 
 struct ControllerInterfaceParams {
@@ -13,7 +11,6 @@ struct ControllerInterfaceParams {
   std::string robot_description;
   unsigned int update_rate = 0;
   unsigned int controller_manager_update_rate = 0;
-  std::unordered_map<std::string, joint_limits::JointLimits> hard_joint_limits;
 };
 
 }  // namespace controller_interface

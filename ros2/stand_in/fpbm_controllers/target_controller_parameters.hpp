@@ -41,9 +41,20 @@ struct Params {
     std::vector<double> velocity = {};
     std::vector<double> acceleration = {};
     std::vector<double> jerk = {};
+    std::vector<double> effort = {};
   } limits;
   std::vector<std::string> command_interfaces = {"position"};
   std::vector<std::string> state_interfaces = {"position"};
+  struct Effort {
+    std::vector<double> kp = {};
+    std::vector<double> kd = {};
+    std::vector<double> gravity = {0.0, 0.0, -9.81};
+    bool robot_adds_gravity = false;
+    struct Payload {
+      double mass = 0.0;
+      std::vector<double> centre = {0.0, 0.0, 0.0};
+    } payload;
+  } effort;
   double following_error = 0.05;
   double tip_rate = 50.0;
   double diagnostics_rate = 1.0;
@@ -87,12 +98,16 @@ void for_each_parameter(target_controller::Params& p, Visit&& visit) {
   const auto above_zero = [](double value) { return value > 0.0; };
   const auto not_negative = [](double value) { return value >= 0.0; };
   const auto within = [](double low, double high) { return [=](double v) { return !(v < low || v > high); }; };
-  const auto no_small = [](const Numbers& values) {
-    for (const double value : values) {
-      if (value < 1e-6) return false;
-    }
-    return true;
+  const auto at_least = [](double low) {
+    return [=](const Numbers& values) {
+      for (const double value : values) {
+        if (value < low) return false;
+      }
+      return true;
+    };
   };
+  const auto no_small = at_least(1e-6);
+  const auto no_negative = at_least(0.0);
   visit("joints", p.joints, not_empty);
   visit("arm", p.arm, any);
   visit("base_frame", p.base_frame, not_empty);
@@ -114,8 +129,15 @@ void for_each_parameter(target_controller::Params& p, Visit&& visit) {
   visit("limits.velocity", p.limits.velocity, no_small);
   visit("limits.acceleration", p.limits.acceleration, no_small);
   visit("limits.jerk", p.limits.jerk, no_small);
+  visit("limits.effort", p.limits.effort, no_small);
   visit("command_interfaces", p.command_interfaces, not_empty);
   visit("state_interfaces", p.state_interfaces, not_empty);
+  visit("effort.kp", p.effort.kp, no_negative);
+  visit("effort.kd", p.effort.kd, no_negative);
+  visit("effort.gravity", p.effort.gravity, three);
+  visit("effort.robot_adds_gravity", p.effort.robot_adds_gravity, any);
+  visit("effort.payload.mass", p.effort.payload.mass, not_negative);
+  visit("effort.payload.centre", p.effort.payload.centre, three);
   visit("following_error", p.following_error, above_zero);
   visit("tip_rate", p.tip_rate, within(0.1, 1000.0));
   visit("diagnostics_rate", p.diagnostics_rate, within(0.1, 100.0));

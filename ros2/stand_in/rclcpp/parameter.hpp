@@ -14,6 +14,9 @@ namespace rcl_interfaces::msg {
 struct ParameterDescriptor {
   bool read_only = false;
 };
+struct ListParametersResult {
+  std::vector<std::string> names;
+};
 
 }  // namespace rcl_interfaces::msg
 
@@ -80,6 +83,13 @@ class NodeParametersInterface {
   [[nodiscard]] const std::map<std::string, ParameterValue>& get_parameter_overrides() const { return overrides; }
   [[nodiscard]] bool has_parameter(const std::string& name) const { return declared.count(name) > 0; }
   [[nodiscard]] Parameter get_parameter(const std::string& name) const { return Parameter(declared.at(name)); }
+  /// Only for all parameters of any depth.
+  [[nodiscard]] rcl_interfaces::msg::ListParametersResult list_parameters(const std::vector<std::string>&,
+                                                                          std::uint64_t) const {
+    rcl_interfaces::msg::ListParametersResult result;
+    for (const auto& [name, value] : declared) result.names.push_back(name);
+    return result;
+  }
   /// A parameter has one type, the type of its default.
   const ParameterValue& declare_parameter(const std::string& name, const ParameterValue& value,
                                           const rcl_interfaces::msg::ParameterDescriptor& = {},

@@ -26,6 +26,9 @@ struct JointMimic {
   double multiplier = 1.0;
   std::string joint_name;
 };
+struct JointDynamics {
+  double damping = 0.0, friction = 0.0;
+};
 struct Joint {
   enum { UNKNOWN, REVOLUTE, CONTINUOUS, PRISMATIC, FLOATING, PLANAR, FIXED } type = UNKNOWN;
   std::string name;
@@ -33,12 +36,19 @@ struct Joint {
   std::string child_link_name;
   std::string parent_link_name;
   Pose parent_to_joint_origin_transform;
+  std::shared_ptr<JointDynamics> dynamics;
   std::shared_ptr<JointLimits> limits;
   std::shared_ptr<JointMimic> mimic;
+};
+struct Inertial {
+  Pose origin;
+  double mass = 0.0;
+  double ixx = 0.0, ixy = 0.0, ixz = 0.0, iyy = 0.0, iyz = 0.0, izz = 0.0;
 };
 struct Link {
   std::string name;
   std::shared_ptr<Joint> parent_joint;
+  std::shared_ptr<Inertial> inertial = nullptr;
 };
 
 class Model;

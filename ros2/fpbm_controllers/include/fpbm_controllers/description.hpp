@@ -22,6 +22,11 @@ struct NamedLink {
 [[nodiscard]] fpbm::Tree<> tree_of(const std::string& robot_description, const std::string& base,
                                    const std::vector<NamedLink>& links);
 
+/// Adds the inertias of the links, and the friction of the drives, from a robot_description. A link that is fixed to a
+/// link of the tree, or moves relative to this link with joints that are not in the tree, is added to this link, with
+/// those joints at position zero. Throws std::invalid_argument, which names the link, if a joint moves no mass.
+void add_inertias(fpbm::Tree<>& tree, const std::string& robot_description);
+
 /// The joints of a tree from its base to a link.
 [[nodiscard]] std::vector<std::size_t> joints_to(const fpbm::Tree<>& tree, int link);
 

@@ -35,15 +35,15 @@ struct MotionScheme {
   Joints weights;
   double null_damping;                 ///< [1/s]
   double rest_stiffness;               ///< [1/s²]
-  std::optional<Joints> rest_posture;  ///< Default: the posture of begin() [rad].
+  std::optional<Joints> rest_posture;  ///< Default: given to begin() [rad].
 };
 
-/// The null-space motion. start: posture of begin(), the default rest posture.
+/// The null-space motion. rest: the default rest posture.
 [[nodiscard]] inline fpbm::NullSpace<Eigen::Dynamic> null_space_of(const MotionScheme& scheme,
-                                                                   const MotionScheme::Joints& start) {
+                                                                   const MotionScheme::Joints& rest) {
   auto null_space = fpbm::NullSpace<Eigen::Dynamic>().with_damping(scheme.null_damping);
   if (scheme.rest_stiffness > 0.0) {
-    null_space = null_space.with_rest_posture(scheme.rest_posture.value_or(start), scheme.rest_stiffness);
+    null_space = null_space.with_rest_posture(scheme.rest_posture.value_or(rest), scheme.rest_stiffness);
   }
   return null_space;
 }
@@ -70,8 +70,9 @@ class Motion {
   Motion& operator=(const Motion&) = delete;
   virtual ~Motion() = default;
 
-  /// Starts at rest from a posture. Throws std::invalid_argument if the posture is beyond a limit.
-  virtual void begin(const Joints& q) = 0;
+  /// Starts at rest from a posture. rest: the default rest posture. Throws std::invalid_argument if the posture is
+  /// beyond a limit.
+  virtual void begin(const Joints& q, const Joints& rest) = 0;
   /// Sets a new target of a task. Returns false if the target is rejected because of its stamp.
   virtual bool push(std::size_t task, const Target& target) noexcept = 0;
   /// Reduces the bounds of all filters on velocity to a fraction in (0, 1] (TargetFilter::set_speed).
@@ -83,6 +84,8 @@ class Motion {
 
   /// Joint commands.
   [[nodiscard]] virtual const fpbm::State<Eigen::Dynamic>& state() const noexcept = 0;
+  /// Acceleration of the last tick.
+  [[nodiscard]] virtual const Joints& acceleration() const noexcept = 0;
   /// Sets the frame of each task in the commanded posture.
   virtual void locate(Report& report) const noexcept = 0;
 };

@@ -4,24 +4,27 @@
 
 namespace fpbm_controllers {
 
-/// Decides which calls of a loop are ticks of a fixed length. A call is not a tick if the previous ticks are ahead of
-/// the clock of the loop by one tick or more. If calls are late, the ticks do not catch up.
+/// Places the calls of a loop in ticks of a fixed length. A call after the end of a tick starts the next tick. If calls
+/// are late, the ticks do not catch up.
 class Pace {
  public:
   /// dt: length of a tick [s].
   explicit Pace(double dt = 1.0) noexcept : dt_(dt) {}
 
-  /// Whether a call is a tick. period: time since the last call [s].
-  [[nodiscard]] bool due(double period) noexcept {
-    ahead_ = std::max(ahead_ - period, 0.0);
-    if (!(ahead_ < dt_)) return false;
-    ahead_ += dt_;
-    return true;
+  /// Whether a call starts a tick. period: time since the last call [s].
+  [[nodiscard]] bool starts(double period) noexcept {
+    constexpr double kRoundOff = 1e-9;
+    left_ -= std::max(period, 0.0);
+    const bool starts = left_ < -kRoundOff * dt_;
+    left_ = std::max(left_ + (starts ? dt_ : 0.0), 0.0);
+    return starts;
   }
+  /// Time from the last call to the end of the tick [s].
+  [[nodiscard]] double left() const noexcept { return left_; }
 
  private:
   double dt_;
-  double ahead_ = 0.0;  ///< Time of the ticks ahead of the clock [s].
+  double left_ = 0.0;
 };
 
 }  // namespace fpbm_controllers

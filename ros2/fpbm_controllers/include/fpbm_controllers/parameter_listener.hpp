@@ -6,8 +6,8 @@
 
 namespace fpbm_controllers {
 
-/// Declares the parameters. Integers are accepted for numbers. Throws if a value is invalid or missing, or a given
-/// parameter is not a parameter of the controller.
+/// Declares the parameters. Integers are accepted for numbers. Throws if a value is invalid or missing, or the name of
+/// a given parameter resembles the name of a parameter of the controller.
 [[nodiscard]] std::shared_ptr<target_controller::ParamListener> listen_to_parameters(
     const std::shared_ptr<rclcpp_lifecycle::LifecycleNode>& node);
 

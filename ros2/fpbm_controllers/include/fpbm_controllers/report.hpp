@@ -20,8 +20,9 @@ struct TaskReport {
   double scale = 1.0;              ///< Task scale.
   double position_error = 0.0;     ///< Position error relative to the filter's reference [m].
   double orientation_error = 0.0;  ///< Orientation error [rad].
-  std::uint64_t rejected = 0;      ///< Rejected targets: their stamps were not newer than earlier stamps.
-  fpbm::Transform<> at;            ///< Frame of the task, in the base frame or the reference frame.
+  std::uint64_t rejected = 0;      ///< Targets rejected because of their stamps.
+  bool ahead = false;    ///< Whether the last rejected stamp was too far ahead, and not older than earlier stamps.
+  fpbm::Transform<> at;  ///< Frame of the task, in the base frame or the reference frame.
 };
 
 /// Result of a tick: numbers only, so that the loop allocates no memory for reports.
@@ -36,6 +37,8 @@ struct Report {
   double following_error = 0.0;  ///< Largest of all joints; after a fault, the value at the fault [rad].
   std::uint64_t missed = 0;      ///< Ticks in which another thread had locked an interface.
   std::uint64_t early = 0;       ///< Calls that came too soon to be ticks.
+  std::uint64_t limited = 0;     ///< Ticks in which a torque was limited to its bound.
+  std::size_t limited_joint = 0;
   rclcpp::Time time = rclcpp::Time();
   std::array<TaskReport, kTasks> tasks;
 };
@@ -48,10 +51,41 @@ struct Report {
     case Fault::kNone: break;
     case Fault::kFollowing:
       return joint + std::to_string(report.following_error) + " rad from its command, beyond following_error" + advice;
-    case Fault::kUnreadable: return joint + "its position is not a number" + advice;
+    case Fault::kUnreadable: return joint + "its position or velocity is not a number" + advice;
     case Fault::kLocked: return joint + "its command interface stays locked by another thread" + advice;
   }
   return "";
+}
+
+/// Description of a torque at its bound.
+[[nodiscard]] inline std::string limited_message(const Report& report, const std::vector<std::string>& joints) {
+  return "joint '" + joints.at(report.limited_joint) +
+         "': its torque is limited to its effort, so that the arm follows its command less closely. Reduce the "
+         "payload, "
+         "the bounds on acceleration or the gains.";
+}
+
+/// fpbm::advice() for users of ROS.
+[[nodiscard]] inline const char* advice_of(fpbm::Status status) {
+  switch (status) {
+    case fpbm::Status::kCoarse: return "Raise update_rate.";
+    case fpbm::Status::kSlowed:
+      return "Expect a tip error until the joints leave their limits, or send slower targets. The scales of the tasks "
+             "show which task is limited.";
+    case fpbm::Status::kStalled: return "Move the target into the workspace, or send another target.";
+    case fpbm::Status::kNotFinite: return "Lower the gains, or raise update_rate.";
+    default: return fpbm::advice(status);
+  }
+}
+
+/// Why the last targets of a task were rejected.
+[[nodiscard]] inline std::string rejected_message(const TaskReport& task) {
+  return std::string(task.ahead ? "too far ahead of" : "not newer than") + " earlier stamps. Check the sender's clock.";
+}
+
+/// A count with its noun.
+[[nodiscard]] inline std::string counted(std::uint64_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
 /// Suffix of messages with the name of a task; empty for a single task, which has no name.
@@ -71,16 +105,20 @@ struct Report {
   } else {
     const bool well = report.status == fpbm::Status::kOk;
     message.level = well ? Message::OK : fpbm::failed(report.status) ? Message::ERROR : Message::WARN;
-    message.message = std::string(fpbm::message(report.status)) + (well ? "" : ". ") + fpbm::advice(report.status);
+    message.message = std::string(fpbm::message(report.status)) + (well ? "" : ". ") + advice_of(report.status);
     if (well && report.missed > before.missed) {
       message.level = Message::WARN;
       message.message = "interfaces are locked by another thread: the arm waits";
     }
+    if (well && report.limited > before.limited) {
+      message.level = Message::WARN;
+      message.message = limited_message(report, joints);
+    }
     for (std::size_t k = tasks.size(); well && k-- > 0;) {
       if (report.tasks[k].rejected <= before.tasks[k].rejected) continue;
       message.level = Message::WARN;
-      message.message = "targets" + of_task(tasks[k]) +
-                        " are rejected: their stamps are not newer than earlier stamps. Check the sender's clock.";
+      message.message =
+          "targets" + of_task(tasks[k]) + " are rejected: the last stamp is " + rejected_message(report.tasks[k]);
     }
   }
   const auto add = [&message](const std::string& key, const std::string& value) {
@@ -105,6 +143,7 @@ struct Report {
   add("ticks with a locked interface", std::to_string(report.missed));
   add("calls that came too soon", std::to_string(report.early));
   add("speed", std::to_string(report.speed));
+  add("ticks with a limited torque", std::to_string(report.limited));
   return message;
 }
 

@@ -53,11 +53,12 @@ class SourcedLimits {
 
  private:
   using Bound = std::pair<const char*, fpbm::Vector<Eigen::Dynamic> JointLimits::*>;
-  static constexpr std::array<Bound, 5> kBounds{{{"lower", &JointLimits::lower},
+  static constexpr std::array<Bound, 6> kBounds{{{"lower", &JointLimits::lower},
                                                  {"upper", &JointLimits::upper},
                                                  {"velocity", &JointLimits::velocity},
                                                  {"acceleration", &JointLimits::acceleration},
-                                                 {"jerk", &JointLimits::jerk}}};
+                                                 {"jerk", &JointLimits::jerk},
+                                                 {"effort", &JointLimits::effort}}};
 
   JointLimits limits_;
   std::vector<std::array<const char*, kBounds.size()>> sources_;

@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <fpbm/limits/limits.hpp>
 #include <fpbm/model/robot.hpp>
+#include <fpbm_controllers/computed_torque.hpp>
 #include <fpbm_controllers/motion.hpp>
 #include <fpbm_controllers/pace.hpp>
 #include <fpbm_controllers/report.hpp>
+#include <fpbm_controllers/sourced_limits.hpp>
 #include <fpbm_controllers/target_controller_parameters.hpp>
 #include <fpbm_controllers/target_topics.hpp>
 #include <fpbm_controllers/task_settings.hpp>
@@ -22,6 +24,7 @@ namespace fpbm_controllers {
 /// every tick. The targets are messages that arrive at any rate.
 ///
 /// A tick continues from the last command, never from the measured posture, which is only compared with the command.
+/// With the command interface effort, the drives get the torques of the command (ComputedTorque).
 class TargetController : public controller_interface::ControllerInterface {
  public:
   controller_interface::CallbackReturn on_init() override;
@@ -55,24 +58,45 @@ class TargetController : public controller_interface::ControllerInterface {
   [[nodiscard]] MotionScheme scheme(Eigen::Index dof) const;
   /// The narrowest limits of the robot, ros2_control, the preset and the parameters; the limits are logged.
   [[nodiscard]] JointLimits limits(const fpbm::Tree<>& tree) const;
+  /// Applies the limits of the ros2_control tags in robot_description.
+  void narrow_by_tags(SourcedLimits& limits) const;
+  /// Applies the soft limits (safety_controller) in robot_description.
+  void narrow_softly(SourcedLimits& limits) const;
   /// The limits of the preset, for each arm of a tree. Throws std::invalid_argument if an arm is not the preset.
   [[nodiscard]] JointLimits preset_limits(const fpbm::Tree<>& tree) const;
+  /// The torques of a tree from described(), with the inertias of robot_description.
+  [[nodiscard]] ComputedTorque computed_torque(fpbm::Tree<> tree) const;
+  /// A list of a parameter as a vector. Throws std::invalid_argument unless the list has a finite number for each
+  /// joint.
+  [[nodiscard]] Joints joint_numbers(const char* name, const std::vector<double>& values) const;
+  /// Whether the commands contain positions, and not only torques.
+  [[nodiscard]] bool has_positions() const noexcept { return params_.command_interfaces[0] == "position"; }
   void close();
 
   /// Throws std::runtime_error, which names the joint, if an interface cannot be read or the arm moves.
   [[nodiscard]] Joints start();
 
+  /// Whether torques depend on the measured state.
+  [[nodiscard]] bool has_feedback() const noexcept { return torque_ && torque_->has_feedback(); }
   void take_messages() noexcept;
-  /// Reads the joints' positions: the first joint that cannot be read keeps its last reading, and its number is
-  /// returned.
+  /// Advances the command by the time since the last call, by at most a tick: late calls delay the arm. A tick has the
+  /// length for which the limits were made. A call before the end of a tick commands the state of its time in the tick.
+  void advance(double period) noexcept;
+  /// Starts from rest at the commanded positions. The motion to the newest poses continues.
+  void restart();
+  /// Reads the joints' positions, and for the feedback of torques the velocities. A joint that cannot be read keeps its
+  /// last reading. Returns the number of the first joint that cannot be read.
   [[nodiscard]] std::optional<std::size_t> measure();
   /// Difference of two positions of joint i; for a continuous joint, difference of angles, because drivers wrap angles.
   [[nodiscard]] double difference(Eigen::Index i, double a, double b) const noexcept;
   /// Stops the arm if the following error of a joint is too large.
   void compare();
   void stop(Fault fault, std::size_t joint) noexcept;
-  /// Writes the commands. Returns a joint whose command interface is locked.
-  [[nodiscard]] std::optional<std::size_t> command(const Joints& q, const Joints& qd);
+  /// Sets the torques. commanded: at the time of the readings. A position or velocity without a reading has no
+  /// feedback.
+  void set_torques(const fpbm::State<kDof>& commanded, const Joints& acceleration) noexcept;
+  /// Writes the command and the torques. Returns a joint whose command interface is locked.
+  [[nodiscard]] std::optional<std::size_t> write(const Joints& torque);
 
   static constexpr int kLongestLock = 5;  ///< Ticks that the arm waits for a locked interface before it stops.
 
@@ -87,10 +111,20 @@ class TargetController : public controller_interface::ControllerInterface {
 
   // Used only by the loop of an active controller.
   std::unique_ptr<Motion> motion_;
+  std::optional<ComputedTorque> torque_;  ///< None without the command interface effort.
   Pace pace_;
-  std::array<std::uint64_t, Report::kTasks> seen_{};  ///< Target::count of each task's newest target.
-  int locked_for_ = 0;                                ///< Ticks since all joints have taken a command.
+  Joints start_;  ///< Positions at activation.
+  fpbm::State<kDof> tick_start_;
+  fpbm::State<kDof> command_;                          ///< The last command.
+  Joints accepted_;                                    ///< The last positions that the interfaces have accepted.
+  std::array<std::uint64_t, Report::kTasks> seen_{};   ///< Target::count of each task's newest target.
+  std::array<Target, Report::kTasks> newest_{};        ///< The newest target of each task that was not rejected.
+  std::array<double, Report::kTasks> newest_stamp_{};  ///< Newest stamp of each task that was not rejected [s].
+  int locked_for_ = 0;                                 ///< Ticks since all joints have taken a command.
   Joints measured_;
+  Joints measured_velocity_;              ///< Zero without feedback of torques.
+  fpbm::JointBits unread_positions_ = 0;  ///< Joints whose positions could not be read in this tick.
+  fpbm::JointBits unread_velocities_ = 0;
   Report report_;
 };
 
