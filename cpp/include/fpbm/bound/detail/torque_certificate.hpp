@@ -44,8 +44,9 @@ class TorqueCertificate {
   const TorqueState<N, Scalar>& begin(const Models& models, const State<N, Scalar>& state) noexcept {
     cost_ = 0;
     wary_ = std::max(wary_ - 1, 0);
-    if (next().is_at(state)) here_ = 1 - here_;
-    return evaluated(here(), models, state);
+    if (!next().is_at(state)) return evaluated(here(), models, state);
+    here_ = 1 - here_;
+    return here();
   }
   /// The torques at the predicted end of the tick. keeps() may change the result.
   const TorqueState<N, Scalar>& ahead(const Models& models, const State<N, Scalar>& state) noexcept {
@@ -166,12 +167,11 @@ class TorqueCertificate {
   [[nodiscard]] Scalar kept(const Models& models, const JointVector& most, TorqueState<N, Scalar>& torques,
                             const State<N, Scalar>& at, const StopPart<N, Scalar>& part, const JointVector& deviation,
                             bool rests) noexcept {
-    if (!torques.is_at(at)) {
-      JointVector least = deviation_.between(torques.of[models.size() - 1].M, torques.at, at, part);
-      for (Eigen::Index i = 0; i < least.size(); ++i) least.coeffRef(i) = most.coeff(i) - least.coeff(i);
-      const Scalar near = torques.kept_part(least, part, deviation, rests);
-      if (near >= Scalar(1)) return near;
-    }
+    if (torques.is_at(at)) return torques.kept_part(most, part, deviation, rests);
+    JointVector least = deviation_.between(torques.of[models.size() - 1].M, torques.at, at, part);
+    for (Eigen::Index i = 0; i < least.size(); ++i) least.coeffRef(i) = most.coeff(i) - least.coeff(i);
+    const Scalar near = torques.kept_part(least, part, deviation, rests);
+    if (near >= Scalar(1)) return near;
     return evaluated(torques, models, at).kept_part(most, part, deviation, rests);
   }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "fpbm/bound/detail/field_norms.hpp"
@@ -16,9 +17,9 @@ namespace fpbm {
 /// both ends of the part, for constant accelerations, and on the difference of the torques in two states
 /// (docs/torques_proof.md, "Between two evaluations").
 ///
-/// Let s_i = √∫‖∂x/∂q_i‖² dm, over all mass points x, and S_i ≥ s_k for k ≥ i. At a posture, s_i² = M_ii without
-/// rotors. In a part, s_i increases by at most Σ_{k>i} |Δq_k| S_k. The torques and their derivatives are sums of
-/// products of S, velocities, accelerations and the gravity.
+/// Let s_i = √∫‖∂x/∂q_i‖² dm, over all mass points x. At a posture, s_i² = M_ii without rotors. In a part, s_i
+/// increases by at most Σ |Δq_k| s_k over the joints k beyond i, to S_i at most. The torques and their derivatives are
+/// sums of products of S, velocities, accelerations and the gravity.
 template <int N, typename Scalar = double, int Joints = N>
 class TorqueDeviation {
  public:
@@ -36,6 +37,8 @@ class TorqueDeviation {
         sign_(signs(model)) {
     const auto& robot = model.robot();
     for (int link = 1; link <= robot.joints(); ++link) {
+      parents_[static_cast<std::size_t>(link - 1)] = robot.parent(link) - 1;
+      tree_ = tree_ || robot.parent(link) != link - 1;
       auto unit = filled<AllJoints>(robot.joints());
       unit(link - 1) = Scalar(1);
       const JointVector ratio = drives_.by_drive(unit);
@@ -47,12 +50,6 @@ class TorqueDeviation {
         reject_unbounded(robot, source, "links", link);
       }
     }
-    set(model);
-  }
-
-  /// Sets the constants of a model, which may have another payload than before.
-  void set(const Model& model) noexcept {
-    const auto& robot = model.robot();
     AllJoints squares = filled<AllJoints>(robot.joints());  // s² of the joints, at most.
     AllJoints mass = squares;                               // Mass of the links that a joint moves.
     for (int link = 1; link <= robot.joints(); ++link) {
@@ -67,23 +64,36 @@ class TorqueDeviation {
         mass(i) += body.mass;
       });
     }
-    most_ = weight_ = squares;
     const Scalar gravity = norm(model.gravity());
-    Scalar largest(0);
-    Scalar heaviest(0);
-    for (Eigen::Index i = squares.size() - 1; i >= 0; --i) {
-      most_(i) = largest = std::max(largest, std::sqrt(squares(i)));
-      weight_(i) = heaviest = std::max(heaviest, gravity * std::sqrt(mass(i)));
-    }
+    most_ = entrywise(squares, [&](Eigen::Index i) { return std::sqrt(squares.coeff(i)); });
+    weight_ = entrywise(mass, [&](Eigen::Index i) { return gravity * std::sqrt(mass.coeff(i)); });
   }
 
   /// Deviation of each torque [Nm] or [N]. inertia: M in the posture q. start: posture at the start of the part.
   /// velocity: StopPlan::velocity(). seconds: duration of the part [s].
   [[nodiscard]] JointVector of(const Matrix<N, N, Scalar>& inertia, const JointVector& q, const JointVector& start,
                                const Part& part, const JointVector& velocity, Scalar seconds) const noexcept {
-    const FieldNorms<AllJoints> S = sizes(inertia, [&](Eigen::Index i) noexcept {
+    return tree_ ? along<true>(inertia, q, start, part, velocity, seconds)
+                 : along<false>(inertia, q, start, part, velocity, seconds);
+  }
+
+  /// Bounds on the differences of the torques in two states, for the accelerations of a part [Nm] or [N]. inertia: M in
+  /// state x.
+  [[nodiscard]] JointVector between(const Matrix<N, N, Scalar>& inertia, const State<N, Scalar>& x,
+                                    const State<N, Scalar>& y, const Part& part) const noexcept {
+    return tree_ ? near<true>(inertia, x, y, part) : near<false>(inertia, x, y, part);
+  }
+
+ private:
+  using AllJoints = Vector<Joints, Scalar>;
+
+  template <bool kTree>
+  [[nodiscard]] JointVector along(const Matrix<N, N, Scalar>& inertia, const JointVector& q, const JointVector& start,
+                                  const Part& part, const JointVector& velocity, Scalar seconds) const noexcept {
+    const auto S = norms<kTree>(inertia, [&](Eigen::Index i) noexcept {
       return std::abs(start.coeff(i) - q.coeff(i)) + seconds * part.speed.coeff(i);
     });
+    const auto sums = [&](const JointVector& x) noexcept { return S.parents.outward(drives_.rates(x)); };
     const bool line = part.line > Scalar(0);
     const AllJoints a = sums(largest_accelerations(part));
     const AllJoints v = sums(part.speed);
@@ -108,13 +118,13 @@ class TorqueDeviation {
     });
   }
 
-  /// Bounds on the differences of the torques in two states, for the accelerations of a part [Nm] or [N]. inertia: M in
-  /// state x.
-  [[nodiscard]] JointVector between(const Matrix<N, N, Scalar>& inertia, const State<N, Scalar>& x,
-                                    const State<N, Scalar>& y, const Part& part) const noexcept {
+  template <bool kTree>
+  [[nodiscard]] JointVector near(const Matrix<N, N, Scalar>& inertia, const State<N, Scalar>& x,
+                                 const State<N, Scalar>& y, const Part& part) const noexcept {
     const auto change = [&](Eigen::Index i) noexcept { return std::abs(y.qd.coeff(i) - x.qd.coeff(i)); };
     const auto moved = [&](Eigen::Index i) noexcept { return std::abs(y.q.coeff(i) - x.q.coeff(i)); };
-    const FieldNorms<AllJoints> S = sizes(inertia, moved);
+    const auto S = norms<kTree>(inertia, moved);
+    const auto sums = [&](const JointVector& each) noexcept { return S.parents.outward(drives_.rates(each)); };
     const AllJoints a = sums(largest_accelerations(part));
     const AllJoints d = sums(entrywise(x.q, moved));
     const AllJoints dv = sums(entrywise(x.q, change));
@@ -129,39 +139,24 @@ class TorqueDeviation {
     return by_drive(difference, change);
   }
 
- private:
-  using AllJoints = Vector<Joints, Scalar>;
-
   /// S within displacements |moved(i)| from a posture with the inertia matrix M.
-  template <typename Moved>
-  [[nodiscard]] FieldNorms<AllJoints> sizes(const Matrix<N, N, Scalar>& M, const Moved& moved) const noexcept {
-    FieldNorms<AllJoints> sizes{most_, most_};
-    Scalar growth(0);
-    Scalar beyond(0);
-    for (Eigen::Index i = most_.size() - 1; i >= 0; --i) {
-      Scalar& size = sizes.S.coeffRef(i);
-      if (!drives_.follows()) {
-        const Scalar s = std::sqrt(std::max(M.coeff(i, i) - rotors_.coeff(i), Scalar(0)));
-        size = std::max(beyond, std::min(s + growth, size));
-        growth += moved(i) * most_.coeff(i);
-      }
-      sizes.steps.coeffRef(i) = size - beyond;
-      beyond = size;
+  template <bool kTree, typename Moved>
+  [[nodiscard]] FieldNorms<kTree, Joints, Scalar> norms(const Matrix<N, N, Scalar>& M,
+                                                        const Moved& moved) const noexcept {
+    const JointParents<kTree, Joints> parents{parents_};
+    if (drives_.follows()) return {parents, most_};
+    AllJoints S =
+        parents.inward(AllJoints(entrywise(most_, [&](Eigen::Index i) { return moved(i) * most_.coeff(i); })));
+    for (Eigen::Index i = 0; i < S.size(); ++i) {
+      const Scalar s = std::sqrt(std::max(M.coeff(i, i) - rotors_.coeff(i), Scalar(0)));
+      S.coeffRef(i) = std::min(s + S.coeff(i), most_.coeff(i));
     }
-    return sizes;
+    return {parents, S};
   }
 
   [[nodiscard]] static JointVector largest_accelerations(const Part& part) noexcept {
     return entrywise(
         part.low, [&](Eigen::Index i) { return std::max(std::abs(part.low.coeff(i)), std::abs(part.high.coeff(i))); });
-  }
-
-  /// Cumulative sums over the joints of the magnitudes of joint rates, from the rates of the drives.
-  [[nodiscard]] AllJoints sums(const JointVector& x) const noexcept {
-    AllJoints sums = drives_.rates(x);
-    Scalar sum(0);
-    for (Eigen::Index i = 0; i < sums.size(); ++i) sums.coeffRef(i) = sum += std::abs(sums.coeff(i));
-    return sums;
   }
 
   /// Bounds on the torques of the drives, from bounds on the torques of the joints and on changes of the velocities.
@@ -187,11 +182,13 @@ class TorqueDeviation {
 
   Drives<N, Joints, Scalar> drives_;
   Levers<Scalar> levers_;
-  JointVector viscous_;  ///< [Nm s/rad]
-  JointVector rotors_;   ///< [kg m²]
-  AllJoints sign_;       ///< Signs of the ratios of the joints to their drives.
-  AllJoints most_;       ///< S in any posture [kg½ m].
-  AllJoints weight_;     ///< Gravity times the root of the mass that each joint moves [kg½ m/s²].
+  std::array<int, static_cast<std::size_t>(kCapacity<Joints>)> parents_{};  ///< Of each joint, −1 on the base.
+  bool tree_ = false;                                                       ///< Whether the robot is no chain.
+  JointVector viscous_;                                                     ///< [Nm s/rad]
+  JointVector rotors_;                                                      ///< [kg m²]
+  AllJoints sign_;    ///< Signs of the ratios of the joints to their drives.
+  AllJoints most_;    ///< S in any posture [kg½ m].
+  AllJoints weight_;  ///< Gravity times the root of the mass that each joint moves [kg½ m/s²].
 };
 
 }  // namespace fpbm
