@@ -162,7 +162,7 @@ TEST(Fastest, takes_the_least_time_of_one_joint) {
     limits.acceleration(0) = random.uniform(1.0, 20.0);
     limits.jerk(0) = std::pow(10.0, random.uniform(1.0, 4.0));
     const FastestClock clock(quintic_spline(distance, 1.0), limits,
-                             [](double, const auto&, const auto&, ClockBounds&) {});
+                             [](double, const auto&, ClockBounds&) {});
     const double least = least_duration(distance, limits.velocity(0), limits.acceleration(0), limits.jerk(0));
     EXPECT_GE(clock.duration(), least * (1.0 - 1e-6));
     EXPECT_LE(clock.duration(), least * 1.01)
@@ -174,7 +174,7 @@ TEST(Fastest, clock_is_the_integral_of_its_rate) {
   JointLimits<1> limits = JointLimits<1>::none(1);
   limits.velocity(0) = limits.acceleration(0) = 1.0;
   limits.jerk(0) = 10.0;
-  FastestClock clock(quintic_spline(1.0, 2.0), limits, [](double, const auto&, const auto&, ClockBounds&) {});
+  FastestClock clock(quintic_spline(1.0, 2.0), limits, [](double, const auto&, ClockBounds&) {});
   clock.stretch(1.5 * clock.duration());
   const double T = clock.duration();
   EXPECT_EQ(clock.at(0.0).s, 0.0);

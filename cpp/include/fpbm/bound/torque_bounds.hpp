@@ -169,6 +169,17 @@ class TorqueBounds {
     }
   }
 
+  /// Calls f(ratio) for each model and each joint: the torque in a motion divided by its bound.
+  template <typename F>
+  void torque_ratios(const JointVector& q, const JointVector& qd, const JointVector& qdd, const F& f) const {
+    typename Model::State state;
+    models_[0].robot().update(q, qd, state);
+    for (const Model& model : models_) {
+      const JointVector torques = model.inverse_dynamics(state, qdd);
+      for (Eigen::Index i = 0; i < q.size(); ++i) f(torques(i) / most_(i));
+    }
+  }
+
  private:
   /// A joint needs no rows if the torque cannot exceed this fraction of the bound at the start of the tick. The value
   /// is not tuned: within a tick of a Panda, a torque changes by less than 5 % of the bound.

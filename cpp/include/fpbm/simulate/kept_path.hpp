@@ -30,7 +30,7 @@ template <int N, typename Path, typename Kept>
     postures.insert(postures.end(), q.data(), q.data() + q.size());
     closeness.push_back(bounds.closeness(q, KeptMotion::kRange));
   }
-  const double ramp = least_ramp(joints, clock, limits, options.dt);
+  const double ramp = least_ramp(joints, clock, limits, bounds, options.dt);
   return std::make_shared<const PlannedMotion>(std::move(clock), ramp, kStep, std::move(postures),
                                                std::move(closeness));
 }
