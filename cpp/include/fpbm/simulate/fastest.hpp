@@ -18,6 +18,7 @@
 #include "fpbm/simulate/detail/motion.hpp"
 #include "fpbm/simulate/detail/motion_differences.hpp"
 #include "fpbm/simulate/detail/moving_joints.hpp"
+#include "fpbm/simulate/detail/planned_stops.hpp"
 #include "fpbm/simulate/rollout.hpp"
 #include "fpbm/simulate/time_grid.hpp"
 
@@ -73,12 +74,13 @@ void require_posture(Kept& bounds, const JointVector& q, double fraction) {
 }
 
 /// The clock of FastestClock for joint positions along a path, slowed so that the motion lasts a multiple of dt and
-/// keeps the bounds by differences. bounds: Bounds, of which the bounds on speeds and torques bound the clock. Throws
-/// std::invalid_argument as FastestClock does, if the arm cannot hold a posture along the path, and unless the path is
-/// at rest with zero acceleration at an end without a given speed.
+/// keeps the bounds by differences. bounds: Bounds, of which the bounds on speeds and torques bound the clock. slower:
+/// where the clock is slower, or null. Throws std::invalid_argument as FastestClock does, if the arm cannot hold a
+/// posture along the path, and unless the path is at rest with zero acceleration at an end without a given speed.
 template <int N, typename Path, typename Kept>
 [[nodiscard]] FastestClock fastest_clock(const Spline<N>& joints, const Path& path, const JointLimits<N>& limits,
-                                         Kept& bounds, const FastestOptions& options) {
+                                         Kept& bounds, const FastestOptions& options,
+                                         const SlowerIntervals* slower = nullptr) {
   const JointLimits<N> reserved = with_reserve(limits.complete(), options.reserve);
   using Space = typename Path::Space;
   constexpr int kLinear = Space::kRows - Space::kTurns;
@@ -99,22 +101,24 @@ template <int N, typename Path, typename Kept>
   const auto add = [&](double p, const auto& d, ClockBounds& place) {
     if (!bounds.empty()) {
       place.add_speed(faster * bounds.speed_ratio(d[0], d[1]));
-      auto torques = clock_torques(bounds, d[0], Vector<N>(faster * d[1]), Vector<N>(faster * faster * d[2]));
+      auto torques = clock_torques(bounds, d[0], d[1], d[2], faster);
       constexpr double kHeld = 0.9999;  // Nearer to a bound, the arm would hardly move.
       for (std::size_t i = 0; i < torques.size(); ++i) {
-        torques[i].change *= faster;
         if (std::abs(torques[i].rest) <= kHeld) continue;
         require_posture(bounds, d[0], p / path.duration());
         validation::reject("path", " at the fraction ", p / path.duration(), ": joint ",
-                           i % static_cast<std::size_t>(d[0].size()), " needs ", std::abs(torques[i].rest),
-                           " of the bound on its torque at rest: must be at most ", kHeld);
+                           i % static_cast<std::size_t>(d[0].size()), " needs the fraction ",
+                           std::abs(torques[i].rest) / faster, " of the bound on its torque at rest: must be at most ",
+                           kHeld / faster, ", with the reserve");
       }
       place.add_torques(std::move(torques));
     }
-    if (!bounds_tip) return;
-    const Reference<Space> at = path.sample(p);
-    place.add_tip(at.xd.template head<kLinear>(), at.xdd.template head<kLinear>(), options.tip_speed,
-                  options.tip_acceleration);
+    if (bounds_tip) {
+      const Reference<Space> at = path.sample(p);
+      place.add_tip(at.xd.template head<kLinear>(), at.xdd.template head<kLinear>(), options.tip_speed,
+                    options.tip_acceleration);
+    }
+    if (const double factor = slower == nullptr ? 1.0 : slower->at(p); factor > 1.0) place.scale(factor * factor);
   };
   FastestClock clock(joints, reserved, add, given);
   const auto stretch = [&](double factor) {

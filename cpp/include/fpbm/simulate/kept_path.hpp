@@ -18,10 +18,23 @@ namespace fpbm {
 template <int N, typename Path, typename Kept>
 [[nodiscard]] std::shared_ptr<const PlannedMotion> planned_motion(const Spline<N>& joints, const Path& path,
                                                                   const JointLimits<N>& limits, Kept& bounds,
-                                                                  double shortest, const FastestOptions& options) {
+                                                                  double shortest, const FastestOptions& options,
+                                                                  SlowerIntervals& slower) {
   constexpr double kStep = 0.01;  // [s]: at 2 rad/s and 15 rad/s², interpolated postures are exact to 2e-4 rad.
-  FastestClock clock = fastest_clock(joints, path, limits, bounds, options);
-  if (shortest > clock.duration()) clock.stretch(std::ceil(shortest / options.dt - 1e-9) * options.dt);
+  const auto fastest = [&] {
+    FastestClock clock = fastest_clock(joints, path, limits, bounds, options, &slower);
+    if (shortest > clock.duration()) clock.stretch(std::ceil(shortest / options.dt - 1e-9) * options.dt);
+    return clock;
+  };
+  FastestClock clock = fastest();
+  if (bounds.bounds_torques()) {
+    constexpr int kRounds = 4;
+    const Limits<Level::kAcceleration, N> of_ticks(limits, options.dt);
+    for (int round = 0; round < kRounds && slow_down(slower, joints, clock, bounds, of_ticks, 1.0 + options.reserve);
+         ++round) {
+      clock = fastest();
+    }
+  }
   const auto steps = static_cast<int>(std::ceil(clock.duration() / kStep)) + 1;
   std::vector<double> postures;
   std::vector<double> closeness;
@@ -49,6 +62,7 @@ template <int N, typename Path, typename JointsOf, typename Kept>
   constexpr int kPlaces = 100;
   constexpr double kSame = 1e-4;  // [rad] or [m]; each round reduces the deviation to about a tenth.
   std::optional<Spline<N>> joints;
+  SlowerIntervals slower(duration);
   std::shared_ptr<const PlannedMotion> plan;
   for (int round = 0; round < kRounds; ++round) {
     JointPath<N> along = joints_of(plan);
@@ -60,7 +74,7 @@ template <int N, typename Path, typename JointsOf, typename Kept>
     }
     if (deviation < kSame) break;
     joints = std::move(along.joints);
-    plan = planned_motion(*joints, path, limits, bounds, shortest, options);
+    plan = planned_motion(*joints, path, limits, bounds, shortest, options, slower);
   }
   return plan;
 }

@@ -29,21 +29,24 @@ struct ClockTorque {
 };
 
 /// The torques of a motion with the velocities qd and accelerations qdd, for an acceleration of the clock along qd.
-/// bounds: Bounds. Empty without bounds on torques.
+/// bounds: Bounds. Empty without bounds on torques. faster: factor of a reserve: the motion is faster, and all torques
+/// are larger, by this factor.
 template <typename Kept, int N>
 [[nodiscard]] std::vector<ClockTorque> clock_torques(const Kept& bounds, const Vector<N>& q, const Vector<N>& qd,
-                                                     const Vector<N>& qdd) {
+                                                     const Vector<N>& qdd, double faster = 1.0) {
   std::vector<ClockTorque> torques;
   const auto rest = filled<Vector<N>>(q.size());
-  bounds.torque_ratios(q, rest, rest, [&](double ratio) { torques.push_back({ratio, 0.0, 0.0, 0.0}); });
+  bounds.torque_ratios(q, rest, rest, [&](double ratio) { torques.push_back({faster * ratio, 0.0, 0.0, 0.0}); });
   if (torques.empty()) return torques;
-  const auto with = [&](const Vector<N>& v, const Vector<N>& a, const auto& set) {
+  const auto with = [&](const Vector<N>& of_v, const Vector<N>& of_a, const auto& set) {
     auto each = torques.begin();
-    bounds.torque_ratios(q, v, a, [&](double ratio) { set(*each++, ratio); });
+    bounds.torque_ratios(q, of_v, of_a, [&](double ratio) { set(*each++, faster * ratio); });
   };
-  with(rest, qd, [](ClockTorque& torque, double ratio) { torque.change = ratio - torque.rest; });
-  with(qd, qdd, [](ClockTorque& torque, double ratio) { torque.even = ratio; });
-  with(Vector<N>(-qd), qdd, [](ClockTorque& torque, double ratio) {
+  const Vector<N> v = faster * qd;
+  const Vector<N> a = faster * faster * qdd;
+  with(rest, Vector<N>(faster * v), [](ClockTorque& torque, double ratio) { torque.change = ratio - torque.rest; });
+  with(v, a, [](ClockTorque& torque, double ratio) { torque.even = ratio; });
+  with(Vector<N>(-v), a, [](ClockTorque& torque, double ratio) {
     torque.odd = (torque.even - ratio) / 2.0;
     torque.even = (torque.even + ratio) / 2.0 - torque.rest;
   });

@@ -64,7 +64,7 @@ template <int N, typename Kept>
                                        double faster, double dt) {
   double excess = 0.0;
   const auto add = [&](const Vector<N>& q, const Vector<N>& qd, const Vector<N>& qdd) {
-    const auto torques = clock_torques(bounds, q, Vector<N>(faster * qd), Vector<N>(faster * faster * qdd));
+    const auto torques = clock_torques(bounds, q, qd, qdd, faster);
     for (const ClockTorque& torque : torques) excess = std::max(excess, torque.slower());
     return !torques.empty();
   };
