@@ -18,9 +18,9 @@ namespace fpbm {
 template <int N, typename Path, typename Kept>
 [[nodiscard]] std::shared_ptr<const PlannedMotion> planned_motion(const Spline<N>& joints, const Path& path,
                                                                   const JointLimits<N>& limits, Kept& bounds,
-                                                                  double shortest, const FastestOptions& options,
-                                                                  SlowerIntervals& slower) {
+                                                                  double shortest, const FastestOptions& options) {
   constexpr double kStep = 0.01;  // [s]: at 2 rad/s and 15 rad/s², interpolated postures are exact to 2e-4 rad.
+  SlowerIntervals slower(path.duration());
   const auto fastest = [&] {
     FastestClock clock = fastest_clock(joints, path, limits, bounds, options, &slower);
     if (shortest > clock.duration()) clock.stretch(std::ceil(shortest / options.dt - 1e-9) * options.dt);
@@ -29,10 +29,11 @@ template <int N, typename Path, typename Kept>
   FastestClock clock = fastest();
   if (bounds.bounds_torques()) {
     constexpr int kRounds = 4;
+    constexpr int kFew = 12;  // Certificates are not exact: they refuse few stops, also of slow motions.
     const Limits<Level::kAcceleration, N> of_ticks(limits, options.dt);
-    for (int round = 0; round < kRounds && slow_down(slower, joints, clock, bounds, of_ticks, 1.0 + options.reserve);
-         ++round) {
-      clock = fastest();
+    for (int round = 0, refused = kFew + 1; round < kRounds && refused > kFew; ++round) {
+      refused = slow_down(slower, joints, clock, bounds, of_ticks, 1.0 + options.reserve);
+      if (refused > 0) clock = fastest();
     }
   }
   const auto steps = static_cast<int>(std::ceil(clock.duration() / kStep)) + 1;
@@ -62,7 +63,6 @@ template <int N, typename Path, typename JointsOf, typename Kept>
   constexpr int kPlaces = 100;
   constexpr double kSame = 1e-4;  // [rad] or [m]; each round reduces the deviation to about a tenth.
   std::optional<Spline<N>> joints;
-  SlowerIntervals slower(duration);
   std::shared_ptr<const PlannedMotion> plan;
   for (int round = 0; round < kRounds; ++round) {
     JointPath<N> along = joints_of(plan);
@@ -74,7 +74,7 @@ template <int N, typename Path, typename JointsOf, typename Kept>
     }
     if (deviation < kSame) break;
     joints = std::move(along.joints);
-    plan = planned_motion(*joints, path, limits, bounds, shortest, options, slower);
+    plan = planned_motion(*joints, path, limits, bounds, shortest, options);
   }
   return plan;
 }

@@ -27,9 +27,9 @@ namespace fpbm {
 class FastestClock {
  public:
   /// limits: bounds on velocity (with the braking envelopes), acceleration and jerk, which may be infinite if the
-  /// acceleration is finite. add_bounds(p, d, bounds) adds other bounds at a place p to its ClockBounds; d: q, q′, q″ and so on. Throws
-  /// std::invalid_argument if a bound is missing, a joint leaves its range, the path has no length, or the bounds do
-  /// not admit the given speeds.
+  /// acceleration is finite. add_bounds(p, d, bounds) adds other bounds at a place p to its ClockBounds; d: q, q′, q″
+  /// and so on. Throws std::invalid_argument if a bound is missing, a joint leaves its range, the path has no length,
+  /// or the bounds do not admit the given speeds.
   template <int N, typename AddBounds>
   FastestClock(const Spline<N>& joints, const JointLimits<N>& limits, const AddBounds& add_bounds,
                const GivenSpeeds& given = {})

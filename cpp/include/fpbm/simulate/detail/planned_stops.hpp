@@ -58,14 +58,12 @@ template <int N, typename Kept>
 }
 
 /// Slows a clock down where the bounds do not accept the stop of a tracker, so that they accept the stop from a motion
-/// that is faster by a factor `faster`. Returns whether they are not accepted in more than kFew intervals: few stops
-/// are not accepted because a certificate is not exact, also of slow motions.
+/// that is faster by a factor `faster`. Returns the number of intervals with a stop that is not accepted.
 template <int N, typename Kept>
-bool slow_down(SlowerIntervals& slower, const Spline<N>& joints, const FastestClock& clock, Kept& bounds,
-               const Limits<Level::kAcceleration, N>& limits, double faster) {
+int slow_down(SlowerIntervals& slower, const Spline<N>& joints, const FastestClock& clock, Kept& bounds,
+              const Limits<Level::kAcceleration, N>& limits, double faster) {
   constexpr double kStep = 0.95;  // Factor between attempts.
   constexpr double kSlowest = 0.05;
-  constexpr std::ptrdiff_t kFew = 12;
   const double h = limits.tick();
   const auto ticks = static_cast<int>(std::lround(clock.duration() / h));
   const auto state = [&](double p, double rate) {
@@ -88,8 +86,7 @@ bool slow_down(SlowerIntervals& slower, const Spline<N>& joints, const FastestCl
     phase = next;
   }
   slower.slow_down(factors);
-  const auto refused = std::count_if(factors.begin(), factors.end(), [](double factor) { return factor > 1.0; });
-  return refused > kFew;
+  return static_cast<int>(std::count_if(factors.begin(), factors.end(), [](double factor) { return factor > 1.0; }));
 }
 
 }  // namespace fpbm
