@@ -46,10 +46,8 @@ class OptionalTorqueBounds {
   void gaps(const JointVector& q, double range, const F& f) noexcept {
     own_->gaps(q, range, f);
   }
-  template <typename F>
-  void torque_ratios(const JointVector& q, const JointVector& qd, const JointVector& qdd, const F& f) const {
-    own_->torque_ratios(q, qd, qdd, f);
-  }
+  [[nodiscard]] const auto& models() const noexcept { return own_->models(); }
+  [[nodiscard]] const auto& most() const noexcept { return own_->most(); }
 
  private:
   std::unique_ptr<Own> own_;

@@ -33,8 +33,7 @@ namespace fpbm {
 ///   accepts(limits, from, stop): whether the tick and the Stop after it keep the bound; true without a certificate
 ///   gaps(q, range, f)     for InverseKinematics and kept paths: calls f(gap, gradient) for each gap below range
 ///   speed_ratio(q, qd)    for fastest() only, of a bound on speeds: largest ratio of a speed to its bound
-///   torque_ratios(q, qd, qdd, f)  for fastest() only, of a bound on torques: calls f(ratio) for each torque
-///   slower_stop(fraction), require_limits(limits): see TorqueBounds
+///   slower_stop(fraction), require_limits(limits), models(), most(): see TorqueBounds
 ///
 /// rows() and accepts() are noexcept, and rows() is called before accepts(). A bound allocates at construction only.
 template <typename... Each>
@@ -166,16 +165,6 @@ class Bounds : public BoundTuple<Each...> {
       }
     });
     return largest;
-  }
-
-  /// Calls f(ratio) with the ratio of each torque to its bound in a motion, with its sign, of bounds on torques.
-  template <typename JointVector, typename F>
-  void torque_ratios(const JointVector& q, const JointVector& qd, const JointVector& qdd, const F& f) const {
-    each([&](const auto& bound) {
-      if constexpr (kHas<std::decay_t<decltype(bound)>, bound_member::TorqueRatios, JointVector, F>) {
-        if (!bound.empty()) bound.torque_ratios(q, qd, qdd, f);
-      }
-    });
   }
 
   /// Sum of the distances to near shapes [m]. While the arm is at rest, the sum changes only if obstacles move.

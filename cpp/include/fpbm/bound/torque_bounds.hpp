@@ -68,6 +68,8 @@ class TorqueBounds {
   }
   [[nodiscard]] const Model& model() const noexcept { return models_.back(); }
   [[nodiscard]] const JointVector& effort() const noexcept { return effort_; }
+  [[nodiscard]] const std::vector<Model>& models() const noexcept { return models_; }
+  [[nodiscard]] const JointVector& most() const noexcept { return most_; }
 
   /// Throws std::invalid_argument unless the motion is at acceleration level with bounds on all accelerations.
   template <Level kLevel>
@@ -166,17 +168,6 @@ class TorqueBounds {
         const Scalar factor = (g(i) > Scalar(0) ? Scalar(-1) : Scalar(1)) / most_(i);
         f(gap, entrywise(g, [&](Eigen::Index j) { return factor * gradient.coeff(i, j); }));
       }
-    }
-  }
-
-  /// Calls f(ratio) for each model and each joint: the torque in a motion divided by its bound.
-  template <typename F>
-  void torque_ratios(const JointVector& q, const JointVector& qd, const JointVector& qdd, const F& f) const {
-    typename Model::State state;
-    models_[0].robot().update(q, qd, state);
-    for (const Model& model : models_) {
-      const JointVector torques = model.inverse_dynamics(state, qdd);
-      for (Eigen::Index i = 0; i < q.size(); ++i) f(torques(i) / most_(i));
     }
   }
 
