@@ -142,6 +142,15 @@ def test_moving_ends_keep_torques():
     assert run.t[-1] > fp.fastest(PANDA, seam, MVN, READY, task="pose", **ends).t[-1]
 
 
+def test_two_arms_keep_torques():
+    robot = fp.Robot.preset("two_pandas").with_payload(3.0, com=(0, 0, 0.15), frame="left_tip")
+    stack = fp.Stack([fp.PoseTask(f"{side}_tip", name=side, k=5) for side in ("left", "right")])
+    paths = {"left": fp.Circle(0.15).in_plane("yz"), "right": fp.Line((0.0, 0.05, 0.1))}
+    bound, bounds = 0.55 * robot.limits.effort, [fp.TorqueBounds(fraction=0.55)]
+    run = fp.fastest(robot, paths, MVN, [*READY, *READY], stack=stack, bounds=bounds)
+    assert 0.97 < torque_ratio(robot, bound, run.q, run.qd, run.qdd) <= 1 + 1e-9
+
+
 HELD = (
     r"path at the fraction 0\.\d+: joint 'panda_joint2': torque at rest = .* must be at most 39\.15.*hold its posture"
 )

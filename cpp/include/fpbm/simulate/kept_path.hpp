@@ -28,8 +28,8 @@ template <int N, typename Path, typename Kept>
   };
   FastestClock clock = fastest();
   if (bounds.bounds_torques()) {
-    constexpr int kRounds = 4;
-    constexpr int kFew = 12;  // Certificates are not exact: they refuse few stops, also of slow motions.
+    constexpr int kRounds = 8;
+    constexpr int kFew = 2;  // Certificates are not exact: they refuse few stops, also of slow motions.
     const Limits<Level::kAcceleration, N> of_ticks(limits, options.dt);
     for (int round = 0, refused = kFew + 1; round < kRounds && refused > kFew; ++round) {
       refused = slow_down(slower, joints, clock, bounds, of_ticks, 1.0 + options.reserve);
