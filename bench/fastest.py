@@ -12,6 +12,9 @@ orientation (position tasks with 6 joints). Paths that leave the workspace or th
    into the path for 2 s. The largest errors, the ratios to the bounds, and the duration relative to the least duration.
 4. Ruckig (`pip install ruckig`) on straight lines of a gantry, from rest to rest: the duration relative to Ruckig.
 5. Weights: the duration under WMVN with the weights 1/A^2, A the bounds on acceleration, relative to MVN.
+6. Torques: arms with payloads, and a fraction of their efforts. Largest ratio of a torque to its bound, by inverse
+   dynamics at the samples and at both ends of each tick, the duration relative to the duration without bounds on
+   torques and, without bounds on jerk, relative to TOPP-RA, and trackers as in 3, alone.
 """
 
 from __future__ import annotations
@@ -28,8 +31,10 @@ from numpy.typing import NDArray
 import fpbm_cpp as fp
 
 ARMS = ("panda", "fr3", "iiwa14", "gen3", "ur5e", "xarm7")
-JERK = {"iiwa14": 500.0, "gen3": 200.0, "ur5e": 200.0, "xarm7": 1000.0}  # Arms whose makers publish no bound [rad/s^3].
+# Arms whose makers publish no bound [rad/s^3].
+JERK = {"iiwa14": 500.0, "gen3": 200.0, "ur5e": 200.0, "ur10e": 200.0, "xarm7": 1000.0}
 DT = 1e-3
+LOADS = {"panda": (3.0, 0.7), "ur10e": (10.0, 0.8), "iiwa14": (12.0, 0.7)}  # Payload [kg], fraction of the efforts.
 
 Array = NDArray[np.float64]
 
@@ -46,7 +51,9 @@ def limits_of(arm: fp.SerialArm, name: str, jerk: bool) -> fp.JointLimits:
     )
 
 
-def random_run(arm: fp.SerialArm, limits: fp.JointLimits, random: np.random.Generator) -> tuple[fp.Run, float]:
+def random_run(
+    arm: fp.SerialArm, limits: fp.JointLimits, random: np.random.Generator, bounds: tuple[fp.TorqueBounds, ...] = ()
+) -> tuple[fp.Run, float]:
     """A motion along a random path, and the processor time of fp.fastest() [s]."""
     low, high = np.maximum(limits.lower, -2.8), np.minimum(limits.upper, 2.8)
     while True:
@@ -55,7 +62,8 @@ def random_run(arm: fp.SerialArm, limits: fp.JointLimits, random: np.random.Gene
         path = fp.Waypoints(np.vstack([np.zeros(3), np.cumsum(steps, axis=0)]), duration=1.0)
         begin = time.process_time()
         try:
-            run = fp.fastest(arm, path, fp.MVN(), q0, dt=DT, task="pose" if arm.dof > 6 else "position", limits=limits)
+            task = "pose" if arm.dof > 6 else "position"
+            run = fp.fastest(arm, path, fp.MVN(), q0, dt=DT, task=task, limits=limits, bounds=bounds)
         except fp.ParameterError:
             continue
         return run, time.process_time() - begin
@@ -69,10 +77,10 @@ def ratios(run: fp.Run) -> list[float]:
 
 
 def toppra_duration(run: fp.Run) -> float:
-    """Duration of TOPP-RA along the joint path of a run, within its bounds on velocity and acceleration [s]."""
+    """Duration of TOPP-RA along the joint path of a run, within its bounds on velocity, acceleration and torque [s]."""
     import toppra
     from toppra.algorithm import TOPPRA
-    from toppra.constraint import JointAccelerationConstraint, JointVelocityConstraint
+    from toppra.constraint import JointAccelerationConstraint, JointVelocityConstraint, SecondOrderConstraint
 
     length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(run.q, axis=0), axis=1))])
     even = np.linspace(0.0, length[-1], 601)
@@ -83,6 +91,10 @@ def toppra_duration(run: fp.Run) -> float:
         JointVelocityConstraint(np.stack([-velocity, velocity], axis=1)),
         JointAccelerationConstraint(np.stack([-acceleration, acceleration], axis=1)),
     ]
+    if run.options["bounds"]:
+        most, none = run.largest_torques, np.zeros(run.arm.dof)
+        dynamics, sides = run.arm.inverse_dynamics, np.stack([-most, most], axis=1)
+        bounds.append(SecondOrderConstraint.joint_torque_constraint(dynamics, sides, none))
     solver = TOPPRA(bounds, path, gridpoints=even, solver_wrapper="seidel")
     solver.compute_parameterization(0.0, 0.0)
     sd = solver.problem_data.sd_vec
@@ -110,7 +122,7 @@ def ball(centre: Any) -> fp.Capsule:
 class Ride:
     """A motion of a tracker along a kept path, which lasts half of the least duration, tick by tick."""
 
-    def __init__(self, run: fp.Run, level: str, bounds: list[fp.Clearance]) -> None:
+    def __init__(self, run: fp.Run, level: str, bounds: list[fp.Clearance | fp.TorqueBounds]) -> None:
         assert isinstance(run.path, fp.Waypoints)
         self.tracker = fp.Tracker(
             run.arm,
@@ -126,13 +138,14 @@ class Ride:
         self.follower = self.tracker.follow(path, keep_path=True)
         self.q = [self.tracker.q]
         self.error = 0.0
-        self.waited = 0
+        self.waited = self.blocked = 0
 
     def tick(self) -> bool:
         tick = self.tracker.tick(self.follower)
         self.q.append(tick.q)
         self.error = max(self.error, float(np.abs(tick.error).max()))
         self.waited += bool(np.abs(tick.qd).max() < 1e-5)
+        self.blocked += tick.status is fp.Status.BLOCKED
         return not self.follower.done
 
     def ratios(self, limits: fp.JointLimits) -> list[float]:
@@ -230,6 +243,43 @@ def ruckig_ratios(count: int, random: np.random.Generator) -> list[float]:
     return ratios
 
 
+def torque_row(name: str, count: int, random: np.random.Generator) -> list[str]:
+    """Row of the table for motions of an arm with a payload within bounds on torques."""
+    mass, fraction = LOADS[name]
+    arm = fp.SerialArm.preset(name).with_payload(mass, com=(0.0, 0.0, 0.1))
+    bound = fp.TorqueBounds(fraction=fraction)
+    found = []
+    while len(found) < count:
+        run, seconds = random_run(arm, limits_of(arm, name, True), random, (bound,))
+        mean = np.diff(run.qd, axis=0) / DT
+        states = (run.q, run.qd, run.qdd), (run.q[:-1], run.qd[:-1], mean), (run.q[1:], run.qd[1:], mean)
+        torque = max(np.max(np.abs(arm.inverse_dynamics(*state)) / run.largest_torques) for state in states)
+        given: dict[str, Any] = {"dt": DT, "task": run.task}
+        free = fp.fastest(arm, run.path, run.scheme, run.q0, limits=run.limits, **given)
+        loose = fp.fastest(
+            arm, run.path, run.scheme, run.q0, limits=limits_of(arm, name, False), bounds=[bound], **given
+        )
+        try:
+            ride = Ride(run, "acceleration", [bound])
+        except fp.ParameterError:  # Another joint path, or too little torque for the reserve.
+            continue
+        while ride.tick():
+            pass
+        durations = [run.t[-1] / free.t[-1], loose.t[-1] / toppra_duration(loose), len(ride.q) * DT / run.t[-1]]
+        found.append([torque, *durations, ride.error, ride.blocked / len(ride.q), 1e3 * seconds])
+    torques, slower, peer, longer, error, blocked, ms = np.array(found).T
+    pairs = [f"{np.median(x):.3f}, {x.max():.3f}" for x in (slower, peer, longer)]
+    shares = f"{np.mean(error <= 1e-5):.1%}, {error.max():.1e}"
+    return [
+        name,
+        f"{torques.max():.9f}",
+        *pairs,
+        shares,
+        f"{blocked.mean():.2%}",
+        f"{np.median(ms):.0f}, {ms.max():.0f}",
+    ]
+
+
 def print_table(headings: list[str], rows: list[list[Any]]) -> None:
     print("| " + " | ".join(headings) + " |\n|" + "---|" * len(headings))
     for row in rows:
@@ -286,6 +336,10 @@ def main() -> int:
         )
     head = ["kept in the loop", "motions", "within 1e-5 m, rad", "1e-4", "1e-3", "largest"]
     print_table([*head, "velocity", "acceleration", "jerk", "duration / least: median"], rows)
+    print()
+    head = ["arm", "torque", "duration / without torque bounds", "without jerk bounds / TOPP-RA", "kept / least"]
+    head += ["kept within 1e-5 m, largest", "ticks refused", "planning: median, longest [ms]"]
+    print_table(head, [torque_row(name, given.count, np.random.default_rng(given.seed)) for name in LOADS])
     return 0
 
 

@@ -201,13 +201,7 @@ Outcomes fastest(const Model& arm, const Path& path, const Scheme& given, const 
                    stack->paths.front().path);
       }
     }
-    for (const double p : along.joints->times()) {
-      try {
-        kept.require(along.joints->at(p).x);
-      } catch (const std::invalid_argument& error) {
-        validation::reject("path", " at the fraction ", p / duration, ": ", error.what());
-      }
-    }
+    for (const double p : along.joints->times()) require_posture(kept, along.joints->at(p).x, p / duration);
     const auto clock = motion.clock(*along.joints, limits_of(arm, limits), kept, options);
     motion.grid = TimeGrid<double>(clock.duration(), dt);
     const MotionArrays<Space> arrays(motion.grid.samples(), arm.dof(), nullptr, motion.stack);

@@ -27,6 +27,10 @@ double AnyBounds::speed_ratio(const JointVector& q, const JointVector& qd) noexc
 JointVector AnyBounds::away(const JointVector& q) noexcept {
   return all_.away(q);
 }
+void AnyBounds::torque_ratios(const JointVector& q, const JointVector& qd, const JointVector& qdd,
+                              const std::function<void(double)>& f) const {
+  all_.torque_ratios(q, qd, qdd, f);
+}
 
 template <Level kLevel>
 void AnyBounds::require_limits(const Limits<kLevel, kDynamic>& limits) const {

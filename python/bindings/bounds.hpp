@@ -43,6 +43,8 @@ class AnyBounds {
   void gaps(const JointVector& q, double range, const std::function<void(double, const JointVector&)>& f) noexcept;
   [[nodiscard]] double closeness(const JointVector& q, double range) noexcept;
   [[nodiscard]] double speed_ratio(const JointVector& q, const JointVector& qd) noexcept;
+  void torque_ratios(const JointVector& q, const JointVector& qd, const JointVector& qdd,
+                     const std::function<void(double)>& f) const;
   [[nodiscard]] Status status(std::uint64_t active) const noexcept { return all_.status(active); }
   [[nodiscard]] double near_distance_sum() const noexcept { return all_.near_distance_sum(); }
   [[nodiscard]] bool moves_away() const noexcept { return all_.moves_away(); }

@@ -46,6 +46,8 @@ class OptionalTorqueBounds {
   void gaps(const JointVector& q, double range, const F& f) noexcept {
     own_->gaps(q, range, f);
   }
+  [[nodiscard]] const auto& models() const noexcept { return own_->models(); }
+  [[nodiscard]] const auto& most() const noexcept { return own_->most(); }
 
  private:
   std::unique_ptr<Own> own_;

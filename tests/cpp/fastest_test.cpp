@@ -11,6 +11,9 @@
 #include "fpbm/any/any_arm.hpp"
 #include "fpbm/any/detail/any_path.hpp"
 #include "fpbm/bound/speed_bounds.hpp"
+#include "fpbm/bound/torque_bounds.hpp"
+#include "fpbm/model/dynamics.hpp"
+#include "fpbm/model/serial_arm.hpp"
 #include "fpbm/path/placed.hpp"
 #include "fpbm/path/waypoints.hpp"
 #include "fpbm/scheme/schemes.hpp"
@@ -161,8 +164,7 @@ TEST(Fastest, takes_the_least_time_of_one_joint) {
     limits.velocity(0) = random.uniform(0.3, 3.0);
     limits.acceleration(0) = random.uniform(1.0, 20.0);
     limits.jerk(0) = std::pow(10.0, random.uniform(1.0, 4.0));
-    const FastestClock clock(quintic_spline(distance, 1.0), limits,
-                             [](double, const auto&, const auto&, ClockBounds&) {});
+    const FastestClock clock(quintic_spline(distance, 1.0), limits, [](double, const auto&, ClockBounds&) {});
     const double least = least_duration(distance, limits.velocity(0), limits.acceleration(0), limits.jerk(0));
     EXPECT_GE(clock.duration(), least * (1.0 - 1e-6));
     EXPECT_LE(clock.duration(), least * 1.01)
@@ -174,7 +176,7 @@ TEST(Fastest, clock_is_the_integral_of_its_rate) {
   JointLimits<1> limits = JointLimits<1>::none(1);
   limits.velocity(0) = limits.acceleration(0) = 1.0;
   limits.jerk(0) = 10.0;
-  FastestClock clock(quintic_spline(1.0, 2.0), limits, [](double, const auto&, const auto&, ClockBounds&) {});
+  FastestClock clock(quintic_spline(1.0, 2.0), limits, [](double, const auto&, ClockBounds&) {});
   clock.stretch(1.5 * clock.duration());
   const double T = clock.duration();
   EXPECT_EQ(clock.at(0.0).s, 0.0);
@@ -216,6 +218,63 @@ TEST(Fastest, keeps_bounds_on_the_tip_and_on_speeds) {
   EXPECT_GT(largest(fastest_motion(panda(), circle(), bent(), limits))[0], 0.5);
   const auto slow = largest(fastest_motion(panda(), circle(), bent(), limits, {}, Bounds(speeds)));
   EXPECT_LT(slow[0], 0.3);
+}
+
+TEST(Fastest, slower_motions_keep_a_torque) {
+  Random random(5);
+  for (int trial = 0; trial < 1000; ++trial) {
+    const double rest = random.uniform(-0.99, 0.99);
+    const ClockTorque torque{rest, random.uniform(-0.2, 0.2), random.uniform(-3.0, 3.0), 0.0};
+    const double f = torque.slower();
+    if (f > 0.0) {
+      EXPECT_NEAR(std::abs(rest + torque.odd / f + torque.even / (f * f)), 1.0, 1e-9);
+    }
+    for (const double more : {1.0, 1.1, 2.0, 10.0}) {
+      const double slower = std::max(more * f, 1e-3);
+      EXPECT_LE(std::abs(rest + torque.odd / slower + torque.even / (slower * slower)), 1.0 + 1e-9 * more);
+    }
+  }
+}
+
+TEST(Fastest, keeps_bounds_on_torques_at_both_ends_of_each_tick) {
+  const Chain<> chain = presets::panda();
+  const SerialArm<7> arm(chain);
+  const Vector<7> q0 = bent();
+  Dynamics<7> light(chain);
+  Dynamics<7> heavy(chain);
+  ASSERT_TRUE(heavy.set_payload(Robot<7>::kTip, {3.0, {0.0, 0.0, 0.15}}));
+  double last = 0.0;
+  for (const double fraction : {1.0, 0.7, 0.55}) {
+    const Vector<7> effort = fraction * arm.limits().effort;
+    Bounds bounds(TorqueBounds<7>(chain, heavy, effort, light));
+    std::vector<std::array<Vector<7>, 3>> samples;
+    const auto result = fastest(arm, circle(), MVN<7>(), q0, arm.limits(), bounds, {}, [&](const auto& sample) {
+      samples.push_back({sample.q, sample.qd, sample.qdd});
+      return true;
+    });
+    ASSERT_FALSE(failed(result.status));
+    double largest = 0.0;
+    const auto torques = [&](std::size_t k, const Vector<7>& qdd) {
+      RobotState<7> state;
+      heavy.robot().update(samples[k][0], samples[k][1], state);
+      for (const auto* model : {&light, &heavy}) {
+        largest = std::max(largest, model->inverse_dynamics(state, qdd).cwiseAbs().cwiseQuotient(effort).maxCoeff());
+      }
+    };
+    for (std::size_t k = 0; k + 1 < samples.size(); ++k) {
+      const Vector<7> mean = (samples[k + 1][1] - samples[k][1]) / 1e-3;
+      torques(k, samples[k][2]);
+      torques(k, mean);
+      torques(k + 1, mean);
+    }
+    EXPECT_LE(largest, 1.0 + 1e-9);
+    EXPECT_GE(largest, fraction == 1.0 ? 0.7 : 0.97);
+    EXPECT_GT(result.time, last);
+    last = result.time;
+  }
+  Bounds weak(TorqueBounds<7>(chain, heavy, 0.45 * arm.limits().effort));
+  const auto none = [](const auto&) { return true; };
+  expect_refused([&] { fastest(arm, circle(), MVN<7>(), q0, arm.limits(), weak, {}, none); }, "joint 'panda_joint2'");
 }
 
 TEST(Fastest, is_slower_with_smaller_bounds) {

@@ -200,7 +200,7 @@ TEST(GivenSpeeds, of_one_joint_have_the_least_duration) {
     const double change = std::min(0.9 * 2.0 * a * distance, v * v);
     const double low = std::sqrt(std::max(start * start - change, 1e-4));
     const double end = random.uniform(low, std::min(v, std::sqrt(start * start + change)));
-    const auto none = [](double, const auto&, const auto&, ClockBounds&) {};
+    const auto none = [](double, const auto&, ClockBounds&) {};
     FastestClock clock({q, p, rates, rates}, limits, none, {{start, end}, {start, end}});
     const double least = least_duration(distance, v, a, start, end);
     EXPECT_GE(clock.duration(), least * (1.0 - 1e-6));

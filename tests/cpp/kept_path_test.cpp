@@ -6,9 +6,12 @@
 #include <cmath>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "fpbm/bound/preset_capsules.hpp"
+#include "fpbm/bound/torque_bounds.hpp"
+#include "fpbm/model/dynamics.hpp"
 #include "fpbm/model/presets.hpp"
 #include "fpbm/model/serial_arm.hpp"
 #include "fpbm/path/placed.hpp"
@@ -196,6 +199,31 @@ TEST(KeptPath, is_kept_while_an_operator_changes_the_speed) {
     }
     EXPECT_EQ(done, 6);
   });
+}
+
+TEST(KeptPath, is_kept_at_the_edge_of_the_torques) {
+  const auto scheme = FPBM<7>(0.6, JointVector{4.0, 3.0, 2.0, 2.0, 1.0, 1.0, 1.0}, 10.0, 25.0);
+  const Chain<> chain = presets::panda();
+  Dynamics<7> dynamics(chain);
+  ASSERT_TRUE(dynamics.set_payload(Robot<7>::kTip, {3.0, {0.0, 0.0, 0.15}}));
+  Random random(3);
+  // At the second place, the tracker cannot stop everywhere from the fastest motion.
+  const JointVector far{0.0, 0.6, 0.0, -1.6, 0.0, 2.2, 0.785};
+  for (const auto& [q0, fraction] : {std::pair(kBent, 0.55), std::pair(far, 0.86)}) {
+    Bounds bounds(TorqueBounds<7>(chain, dynamics, fraction * panda().limits().effort));
+    auto tracker = tracker_of(scheme, q0, true, bounds);
+    const auto kept = kept_path(panda(), circle(0.5), tracker.scheme(), q0, panda().limits(), bounds, kOptions);
+    for (const bool operated : {false, true}) {
+      auto own = tracker_of(scheme, q0, true, bounds);
+      PathFollower follower(kept, own.tip());
+      const Ride found =
+          operated ? ride(own, follower, operator_of(random, own, follower)) : ride(own, follower, kNothing);
+      EXPECT_TRUE(found.done);
+      EXPECT_LE(found.error, 1e-5);
+      EXPECT_LE(found.ratio, 1.0 + 1e-9);
+      EXPECT_NE(found.worst, Status::kBlocked);
+    }
+  }
 }
 
 /// A path with another motion.

@@ -20,11 +20,10 @@ from ..robots import Robot
 from ..schemes import Scheme
 from ..tasks import Stack
 from .run import Run
-from .run_data import Paths
+from .run_data import ON_BOUND, Paths
 from .simulation import kept_paths, make_run, require_motion, task_and_paths
 
 REMEDY = "Keep the path inside the workspace and away from singular postures, or choose another q0, scheme or weights."
-ON_BOUND = 0.99  # Ratio to a bound above which a joint counts as on the bound.
 
 
 def fastest(
@@ -46,11 +45,11 @@ def fastest(
     """Move an arm along a path in the least time within its limits; the tip stays on the path.
 
     The scheme gives the joint positions along the whole path. The clock of the path then minimises the duration within
-    the bounds on velocity, acceleration and jerk of all joints (docs: Paths in the least time). The motion begins and
-    ends at rest, or with the given speeds of the tip: the bounds then hold from the first sample to the last. The
-    durations and time laws of shapes have no effect: only the geometry counts, and paths need no duration. The speed
-    of a path at_speed() is a bound. Between the parts of a Sequence, the arm stops. run.saturated and
-    run.bound_ratios() show which bounds limit the motion.
+    the bounds on velocity, acceleration and jerk of all joints (docs: Paths in the least time), and on torques at both
+    ends of every tick, with TorqueBounds. The motion begins and ends at rest, or with the given speeds of the tip: the
+    bounds then hold from the first sample to the last. The durations and time laws of shapes have no effect: only the
+    geometry counts, and paths need no duration. The speed of a path at_speed() is a bound. Between the parts of a
+    Sequence, the arm stops. run.saturated, run.bottleneck and run.bound_ratios() show which bounds limit the motion.
 
     Parameters
     ----------
@@ -65,15 +64,15 @@ def fastest(
     start_speed, end_speed : float
         Speeds of the tip along the path at the start and at the end; for a stack, of the frame of the task of x [m/s].
         Zero: at rest. Waypoints and cusps have no bounded curvature at their ends, and need zero.
-    bounds : sequence of Clearance and TaskBounds, optional
+    bounds : sequence of Clearance, TaskBounds and TorqueBounds, optional
         Bounds that the motion must keep. The scheme does not avoid them.
 
     Raises
     ------
     ParameterError
         If an argument is out of range, or the scheme cannot follow the path within the ranges of the joints and within
-        the bounds. The message says at which fraction of the path. If the bounds do not admit a speed at an end, the
-        message has a lower speed.
+        the bounds, or the arm cannot hold a posture of the path. The message says at which fraction of the path. If the
+        bounds do not admit a speed at an end, the message has a lower speed.
     """
     require_motion(arm, path, scheme, timed=False)
     if scheme.level != "velocity":

@@ -17,7 +17,7 @@ from ..joints import JointLimits
 from ..paths import Path
 from ..robots import Robot
 from ..schemes import Scheme
-from ..skeleton import task_frames, task_jacobians
+from ..skeleton import joint_labels, task_frames, task_jacobians
 from ..tasks import FrameTask, PoseTask, PositionTask, Stack
 
 Paths: TypeAlias = Path | Mapping[str, Path]  # Path of one task, or paths of several tasks by name.
@@ -26,6 +26,7 @@ LIMITED = ("scale", "saturated", "clearance")  # Arrays of runs within joint lim
 OF_STACKS = ("scales", "task_errors")
 
 
+ON_BOUND = 0.99  # Ratio to a bound above which a joint counts as on the bound.
 ON_PATH = 1e-3  # Largest distance of the tip from its path in a complete motion [m].
 SHRINK = "Make the path smaller, or choose another start posture q0"
 REMEDIES = {
@@ -232,6 +233,16 @@ class RunData:
         ratios = {name: np.abs(motion) / getattr(limits, name) for name, motion in motions.items()}
         torque = self.torque
         return ratios if torque is None else {**ratios, "torque": np.abs(torque) / self.largest_torques}
+
+    @property
+    def bottleneck(self) -> NDArray[np.str_]:
+        """The bound that limits the motion at each sample, shape (N,), for example 'torque of panda_joint2'; '' if no
+        velocity, acceleration, jerk or torque is within 1 % of its bound, or beyond.
+        """
+        ratios = self.bound_ratios()
+        names = np.array([f"{kind} of {joint}" for kind in ratios for joint in joint_labels(self.arm)])
+        table = np.concatenate(list(ratios.values()), axis=1)
+        return np.where(table.max(axis=1) > ON_BOUND, names[table.argmax(axis=1)], "")
 
     def manipulability(self) -> Array:
         """sqrt(det(J J')) of the tip, shape (N,): 0 in a singular posture (Yoshikawa, 1985).

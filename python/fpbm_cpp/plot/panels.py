@@ -13,6 +13,7 @@ from .._types import Array
 from ..arms import Arm
 from ..bounds import clearance_among, torque_bounds_among
 from ..motion.run import Run
+from ..motion.run_data import ON_BOUND
 from ..motion.task_errors import error_parts, tracks
 from ..robots import Robot
 from ..skeleton import joint_labels, joint_points, joint_units, task_frames, torque_units
@@ -230,14 +231,16 @@ def task_error_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
 
 
 def saturation_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
-    """A bar for each interval in which a joint is on a bound."""
+    """A bar for each interval in which a joint is on a bound, with a line in the bar if the bound is on its torque."""
     assert run.saturated is not None
     n = run.arm.dof
     ends = np.append(run.t, run.t[-1:])
-    for joint, on, (colour, _) in zip(range(1, n + 1), run.saturated.T, theme.styles()):
-        edges = np.flatnonzero(np.diff(on, prepend=False, append=False))
-        spans = [(ends[a], ends[b] - ends[a]) for a, b in zip(edges[::2], edges[1::2])]
-        axes.broken_barh(spans, (joint - 0.4, 0.8), color=colour, lw=0)
+    torque = run.saturated & (run.bound_ratios().get("torque", np.zeros((1, 1))) > ON_BOUND)
+    for joint, *on, (colour, _) in zip(range(1, n + 1), run.saturated.T, torque.T, theme.styles()):
+        for flags, height, fill in zip(on, (0.8, 0.15), (colour, theme.ink)):
+            edges = np.flatnonzero(np.diff(flags, prepend=False, append=False))
+            spans = [(ends[a], ends[b] - ends[a]) for a, b in zip(edges[::2], edges[1::2])]
+            axes.broken_barh(spans, (joint - height / 2, height), color=fill, lw=0)
     over_time(axes, "joint")
     axes.set(ylim=(n + 0.6, 0.4), yticks=range(1, n + 1, ceil(n / 8)))
     axes.grid(False, axis="y")

@@ -33,7 +33,7 @@ namespace fpbm {
 ///   accepts(limits, from, stop): whether the tick and the Stop after it keep the bound; true without a certificate
 ///   gaps(q, range, f)     for InverseKinematics and kept paths: calls f(gap, gradient) for each gap below range
 ///   speed_ratio(q, qd)    for fastest() only, of a bound on speeds: largest ratio of a speed to its bound
-///   slower_stop(fraction), require_limits(limits): see TorqueBounds
+///   slower_stop(fraction), require_limits(limits), models(), most(): see TorqueBounds
 ///
 /// rows() and accepts() are noexcept, and rows() is called before accepts(). A bound allocates at construction only.
 template <typename... Each>

@@ -68,6 +68,8 @@ class TorqueBounds {
   }
   [[nodiscard]] const Model& model() const noexcept { return models_.back(); }
   [[nodiscard]] const JointVector& effort() const noexcept { return effort_; }
+  [[nodiscard]] const std::vector<Model>& models() const noexcept { return models_; }
+  [[nodiscard]] const JointVector& most() const noexcept { return most_; }
 
   /// Throws std::invalid_argument unless the motion is at acceleration level with bounds on all accelerations.
   template <Level kLevel>

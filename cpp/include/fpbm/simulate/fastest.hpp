@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <utility>
 
 #include "fpbm/core/detail/validation.hpp"
 #include "fpbm/core/status.hpp"
@@ -16,6 +18,7 @@
 #include "fpbm/simulate/detail/motion.hpp"
 #include "fpbm/simulate/detail/motion_differences.hpp"
 #include "fpbm/simulate/detail/moving_joints.hpp"
+#include "fpbm/simulate/detail/planned_stops.hpp"
 #include "fpbm/simulate/rollout.hpp"
 #include "fpbm/simulate/time_grid.hpp"
 
@@ -56,13 +59,28 @@ template <int N>
   return limits;
 }
 
+/// Throws std::invalid_argument if the bounds do not admit the posture q at a fraction of a path.
+template <typename Kept, typename JointVector>
+void require_posture(Kept& bounds, const JointVector& q, double fraction) {
+#if defined(__cpp_exceptions)
+  try {
+    bounds.require(q);
+  } catch (const std::invalid_argument& error) {
+    validation::reject("path", " at the fraction ", fraction, ": ", error.what());
+  }
+#else
+  bounds.require(q);
+#endif
+}
+
 /// The clock of FastestClock for joint positions along a path, slowed so that the motion lasts a multiple of dt and
-/// keeps the bounds by differences. bounds: Bounds, of which the bounds on speeds bound the clock. Throws
-/// std::invalid_argument as FastestClock does, and unless the path is at rest with zero acceleration at an end without
-/// a given speed.
+/// keeps the bounds by differences. bounds: Bounds, of which the bounds on speeds and torques bound the clock. slower:
+/// where the clock is slower, or null. Throws std::invalid_argument as FastestClock does, if the arm cannot hold a
+/// posture along the path, and unless the path is at rest with zero acceleration at an end without a given speed.
 template <int N, typename Path, typename Kept>
 [[nodiscard]] FastestClock fastest_clock(const Spline<N>& joints, const Path& path, const JointLimits<N>& limits,
-                                         Kept& bounds, const FastestOptions& options) {
+                                         Kept& bounds, const FastestOptions& options,
+                                         const SlowerIntervals* slower = nullptr) {
   const JointLimits<N> reserved = with_reserve(limits.complete(), options.reserve);
   using Space = typename Path::Space;
   constexpr int kLinear = Space::kRows - Space::kTurns;
@@ -79,12 +97,28 @@ template <int N, typename Path, typename Kept>
     }
   }
   const bool bounds_tip = std::isfinite(options.tip_speed) || std::isfinite(options.tip_acceleration);
-  const auto add = [&](double p, const Vector<N>& q, const Vector<N>& dq, ClockBounds& place) {
-    if (!bounds.empty()) place.add_speed((1.0 + options.reserve) * bounds.speed_ratio(q, dq));
-    if (!bounds_tip) return;
-    const Reference<Space> at = path.sample(p);
-    place.add_tip(at.xd.template head<kLinear>(), at.xdd.template head<kLinear>(), options.tip_speed,
-                  options.tip_acceleration);
+  const double faster = 1.0 + options.reserve;
+  const auto add = [&](double p, const auto& d, ClockBounds& place) {
+    if (!bounds.empty()) {
+      place.add_speed(faster * bounds.speed_ratio(d[0], d[1]));
+      auto torques = clock_torques(bounds, d[0], d[1], d[2], faster);
+      constexpr double kHeld = 0.9999;  // Nearer to a bound, the arm would hardly move.
+      for (std::size_t i = 0; i < torques.size(); ++i) {
+        if (std::abs(torques[i].rest) <= kHeld) continue;
+        require_posture(bounds, d[0], p / path.duration());
+        validation::reject("path", " at the fraction ", p / path.duration(), ": joint ",
+                           i % static_cast<std::size_t>(d[0].size()), " needs the fraction ",
+                           std::abs(torques[i].rest) / faster, " of the bound on its torque at rest: must be at most ",
+                           kHeld / faster, ", with the reserve");
+      }
+      place.add_torques(std::move(torques));
+    }
+    if (bounds_tip) {
+      const Reference<Space> at = path.sample(p);
+      place.add_tip(at.xd.template head<kLinear>(), at.xdd.template head<kLinear>(), options.tip_speed,
+                    options.tip_acceleration);
+    }
+    if (const double factor = slower == nullptr ? 1.0 : slower->at(p); factor > 1.0) place.scale(factor * factor);
   };
   FastestClock clock(joints, reserved, add, given);
   const auto stretch = [&](double factor) {
@@ -95,7 +129,8 @@ template <int N, typename Path, typename Kept>
   // With given speeds, a longer motion is not slower everywhere.
   const int rounds = given.any() ? 50 : 5;
   for (int round = 0; round < rounds; ++round) {
-    const double excess = excess_of_differences(joints, clock, reserved, options.dt, moving);
+    const double excess = std::max(excess_of_differences(joints, clock, reserved, options.dt, moving),
+                                   excess_of_torques(joints, clock, bounds, faster, options.dt));
     if (!(excess > 1.0)) break;
     stretch(excess);
   }
@@ -151,7 +186,7 @@ RolloutResult<Arm::kDof> fastest(const Arm& arm, const Path& path, const Scheme&
   const auto path_of = joint_path_of(arm, path, scheme, q0);
   if (!path_of.joints) return path_of.result;
   for (const double p : path_of.joints->times()) {
-    if (!bounds.empty()) bounds.require(path_of.joints->at(p).x);
+    if (!bounds.empty()) require_posture(bounds, path_of.joints->at(p).x, p / path.duration());
   }
   const auto move = [&](const auto& along, const Spline<Arm::kDof>& joints) {
     const FastestClock clock = fastest_clock(joints, along, limits, bounds, options);

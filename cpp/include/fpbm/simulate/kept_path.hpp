@@ -20,8 +20,22 @@ template <int N, typename Path, typename Kept>
                                                                   const JointLimits<N>& limits, Kept& bounds,
                                                                   double shortest, const FastestOptions& options) {
   constexpr double kStep = 0.01;  // [s]: at 2 rad/s and 15 rad/s², interpolated postures are exact to 2e-4 rad.
-  FastestClock clock = fastest_clock(joints, path, limits, bounds, options);
-  if (shortest > clock.duration()) clock.stretch(std::ceil(shortest / options.dt - 1e-9) * options.dt);
+  SlowerIntervals slower(path.duration());
+  const auto fastest = [&] {
+    FastestClock clock = fastest_clock(joints, path, limits, bounds, options, &slower);
+    if (shortest > clock.duration()) clock.stretch(std::ceil(shortest / options.dt - 1e-9) * options.dt);
+    return clock;
+  };
+  FastestClock clock = fastest();
+  if (bounds.bounds_torques()) {
+    constexpr int kRounds = 8;
+    constexpr int kFew = 2;  // Certificates are not exact: they refuse few stops, also of slow motions.
+    const Limits<Level::kAcceleration, N> of_ticks(limits, options.dt);
+    for (int round = 0, refused = kFew + 1; round < kRounds && refused > kFew; ++round) {
+      refused = slow_down(slower, joints, clock, bounds, of_ticks, 1.0 + options.reserve);
+      if (refused > 0) clock = fastest();
+    }
+  }
   const auto steps = static_cast<int>(std::ceil(clock.duration() / kStep)) + 1;
   std::vector<double> postures;
   std::vector<double> closeness;
@@ -30,7 +44,7 @@ template <int N, typename Path, typename Kept>
     postures.insert(postures.end(), q.data(), q.data() + q.size());
     closeness.push_back(bounds.closeness(q, KeptMotion::kRange));
   }
-  const double ramp = least_ramp(joints, clock, limits, options.dt);
+  const double ramp = least_ramp(joints, clock, limits, bounds, options.dt);
   return std::make_shared<const PlannedMotion>(std::move(clock), ramp, kStep, std::move(postures),
                                                std::move(closeness));
 }

@@ -28,6 +28,8 @@ template <typename Bound, typename Limits_>
 using RequireLimits = decltype(std::declval<const Bound&>().require_limits(std::declval<const Limits_&>()));
 template <typename Bound, typename Scalar>
 using SlowerStop = decltype(std::declval<const Bound&>().slower_stop(Scalar()));
+template <typename Bound>
+using Models = decltype(std::declval<const Bound&>().models());
 /// Member of a bound on speeds.
 template <typename Bound, typename JointVector>
 using SpeedRatio = decltype(std::declval<Bound&>().speed_ratio(std::declval<const JointVector&>(),

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "fpbm/bound/detail/bound_members.hpp"
+#include "fpbm/core/types.hpp"
 
 namespace fpbm {
 
@@ -29,6 +31,22 @@ class BoundTuple {
   /// Whether a bound may accept a slower stop, or a tick that is nearer to the planned stop, after a refused tick.
   [[nodiscard]] bool bounds_torques() const noexcept {
     return ((kHas<Each, bound_member::SlowerStop, double> && !std::get<Each>(each_).empty()) || ...);
+  }
+
+  /// Calls f(ratio) for each torque in a motion: the torque divided by its bound, of bounds on torques.
+  template <typename JointVector, typename F>
+  void torque_ratios(const JointVector& q, const JointVector& qd, const JointVector& qdd, const F& f) const {
+    each([&](const auto& bound) {
+      if constexpr (kHas<std::decay_t<decltype(bound)>, bound_member::Models>) {
+        if (bound.empty()) return;
+        typename std::decay_t<decltype(bound.models()[0])>::State state;
+        bound.models()[0].robot().update(q, qd, state);
+        for (const auto& model : bound.models()) {
+          const JointVector torques = model.inverse_dynamics(state, qdd);
+          for (Eigen::Index i = 0; i < q.size(); ++i) f(torques(i) / bound.most()(i));
+        }
+      }
+    });
   }
 
  protected:

@@ -5,9 +5,12 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
+
+#include "fpbm/path/detail/clock_torques.hpp"
 
 namespace fpbm {
 
@@ -21,7 +24,8 @@ struct ClockState {
 
 /// The bounds on a motion along a joint path q(p) at one place of the path, as bounds on the clock:
 ///   q̇ = q′√y,  q̈ = q″y + q′y′/2,  q⃛ = √y (q‴y + 3q″y′/2 + q′y″/2),
-/// each divided by its bound. Bounds on the tip, ẋ = x′√y and ẍ = x″y + x′y′/2, are bounds on norms.
+/// each divided by its bound. Torques are M q̈ + h, with the terms of a ClockTorque. Bounds on the tip, ẋ = x′√y and ẍ =
+/// x″y + x′y′/2, are bounds on norms.
 class ClockBounds {
  public:
   /// d: q′, q″, q‴. v, a, j: bounds on velocities, accelerations and jerks; j may be infinite.
@@ -47,11 +51,22 @@ class ClockBounds {
     tip_ = {d2.squaredNorm() / square, d2.dot(d1) / (2.0 * square), d1.squaredNorm() / (4.0 * square)};
   }
 
+  /// Adds bounds on torques, which the motion has for ṗ = 1. The torques at rest are within their bounds.
+  void add_torques(std::vector<ClockTorque> torques) { torques_ = std::move(torques); }
+
+  /// Number of bounds.
+  [[nodiscard]] std::size_t count() const noexcept { return 2 + 4 * joints_.size() + 2 * torques_.size(); }
+
   /// The largest y of a clock with constant rate.
   [[nodiscard]] double largest() const noexcept {
     double inverse = std::max(speed_, std::sqrt(tip_[0]));
     for (const Joint& joint : joints_) {
       inverse = std::max({inverse, std::abs(joint.a0), std::cbrt(joint.j0 * joint.j0)});
+    }
+    for (const ClockTorque& torque : torques_) {  // Also with other signs, so that all smaller y keep the bounds.
+      const double slower =
+          ClockTorque{std::abs(torque.rest), std::abs(torque.odd), std::abs(torque.even), 0.0}.slower();
+      inverse = std::max(inverse, slower * slower);
     }
     return 1.0 / inverse;
   }
@@ -70,6 +85,9 @@ class ClockBounds {
     for (Joint& joint : joints_) {
       joint = {unit * joint.a0, unit * joint.a1, cubic * joint.j0, cubic * joint.j1, cubic * joint.j2};
     }
+    for (ClockTorque& torque : torques_) {
+      torque = {torque.rest, std::sqrt(unit) * torque.odd, unit * torque.even, unit * torque.change};
+    }
   }
 
   /// Sum of −log(1 − r²) over the ratios r of all bounded quantities to their bounds; infinite if a bound is exceeded.
@@ -80,6 +98,10 @@ class ClockBounds {
       const double a = joint.acceleration(at);
       const double j = joint.jerk(at);
       product *= slack(a * a) * slack(at.y * j * j);
+    }
+    for (const ClockTorque& torque : torques_) {
+      const double ratio = torque_at(torque, at).ratio();
+      product *= slack(ratio * ratio);
     }
     return product > 0.0 ? -std::log(product) : std::numeric_limits<double>::infinity();
   }
@@ -116,6 +138,9 @@ class ClockBounds {
       const double j = joint.jerk(at);
       add_ratio(root * j, root * joint.j0 + j / (2.0 * root), root * joint.j1, root * joint.j2);
     }
+    for (const ClockTorque& torque : torques_) {
+      add_ratio(torque_at(torque, at).ratio(), torque.even + torque.odd / (2.0 * root), torque.change / 2.0, 0.0);
+    }
   }
 
   /// The factor by which a clock must be slower everywhere, so that no bound is exceeded here.
@@ -127,7 +152,9 @@ class ClockBounds {
       a = std::max(a, std::abs(joint.acceleration(at)));
       j = std::max(j, root * std::abs(joint.jerk(at)));
     }
-    return std::max({std::sqrt(speed_) * root, std::sqrt(a), std::cbrt(j)});
+    double slower = std::max({std::sqrt(speed_) * root, std::sqrt(a), std::cbrt(j)});
+    for (const ClockTorque& torque : torques_) slower = std::max(slower, torque_at(torque, at).slower());
+    return slower;
   }
 
  private:
@@ -140,12 +167,18 @@ class ClockBounds {
     [[nodiscard]] double jerk(const ClockState& at) const noexcept { return j0 * at.y + j1 * at.y1 + j2 * at.y2; }
   };
 
+  [[nodiscard]] static ClockTorque torque_at(const ClockTorque& torque, const ClockState& at) noexcept {
+    return {torque.rest, torque.odd * std::sqrt(std::max(at.y, 0.0)), torque.even * at.y + torque.change * at.y1 / 2.0,
+            torque.change};
+  }
+
   static double slack(double square) noexcept { return std::max(1.0 - square, 0.0); }
   [[nodiscard]] double tip_square(const ClockState& at) const noexcept {
     return tip_[0] * at.y * at.y + 2.0 * tip_[1] * at.y * at.y1 + tip_[2] * at.y1 * at.y1;
   }
 
   std::vector<Joint> joints_;
+  std::vector<ClockTorque> torques_;
   std::array<double, 3> tip_{};  ///< Quadratic form of the acceleration of the tip in y and y′.
   double speed_ = 0.0;           ///< Largest square of a velocity divided by its bound, at y = 1.
 };

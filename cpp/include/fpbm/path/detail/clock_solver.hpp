@@ -27,10 +27,10 @@ class ClockSolver {
   static constexpr std::array<double, 3> kSimpson{1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0};
 
   /// bounds: for each interval, the bounds at kFractions, in a unit of y near the largest constant y.
-  ClockSolver(const std::vector<std::array<ClockBounds, 3>>& bounds, Eigen::Index dof, double width)
+  ClockSolver(const std::vector<std::array<ClockBounds, 3>>& bounds, double width)
       : bounds_(bounds), spline_(bounds.size(), width) {
     for (std::size_t k = 0; k < 3; ++k) weights_[k] = spline_.weights(kFractions[k]);
-    barriers_ = static_cast<double>(3 * bounds.size() * (2 + 4 * static_cast<std::size_t>(dof)));
+    barriers_ = static_cast<double>(3 * bounds.size() * bounds[0][0].count());
     constexpr double kStart = 0.5;  // Fraction of the largest constant y.
     double largest = std::numeric_limits<double>::infinity();
     for (const auto& interval : bounds_) {

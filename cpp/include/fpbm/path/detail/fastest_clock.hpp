@@ -27,9 +27,9 @@ namespace fpbm {
 class FastestClock {
  public:
   /// limits: bounds on velocity (with the braking envelopes), acceleration and jerk, which may be infinite if the
-  /// acceleration is finite. add_bounds(p, q, q′, bounds) adds other bounds at a place p to its ClockBounds. Throws
-  /// std::invalid_argument if a bound is missing, a joint leaves its range, the path has no length, or the bounds do
-  /// not admit the given speeds.
+  /// acceleration is finite. add_bounds(p, d, bounds) adds other bounds at a place p to its ClockBounds; d: q, q′, q″
+  /// and so on. Throws std::invalid_argument if a bound is missing, a joint leaves its range, the path has no length,
+  /// or the bounds do not admit the given speeds.
   template <int N, typename AddBounds>
   FastestClock(const Spline<N>& joints, const JointLimits<N>& limits, const AddBounds& add_bounds,
                const GivenSpeeds& given = {})
@@ -41,7 +41,7 @@ class FastestClock {
       const auto d = joints.derivatives(i, p);
       ClockBounds place =
           clock_bounds(d, complete, (p - start_) / (clock_.width() * static_cast<double>(clock_.intervals())));
-      add_bounds(p, d[0], d[1], place);
+      add_bounds(p, d, place);
       return place;
     };
     std::vector<std::array<ClockBounds, 3>> bounds;
@@ -74,7 +74,7 @@ class FastestClock {
     };
     double slower = 1.0;
     for (int round = 0; round < rounds; ++round) {
-      ClockSolver solver(bounds, limits.lower.size(), clock_.width());
+      ClockSolver solver(bounds, clock_.width());
       if (given.any()) {
         if (!solver.give_ends(given.squares(unit))) {
           if (round > 0) break;  // The tightened bounds do not admit the speeds.
