@@ -26,10 +26,11 @@ example = importlib.import_module("11_franka")
 PATH = fp.Circle(0.05, 2.0, time_law="quintic").in_plane("xy")
 STREAM = 3.5  # [s]
 
-# libfranka 0.15, include/franka/rate_limiting.h: kLimitEps, kMaxJointAcceleration, kMaxJointJerk.
+# libfranka 0.15, include/franka/rate_limiting.h: kLimitEps, kMaxJointAcceleration, kMaxJointJerk, kMaxTorqueRate.
 EPS = 1e-3
 ACCELERATION = 10.0 - EPS
 JERK = 5000.0 - EPS
+TORQUE_RATE = 1000.0 - EPS
 ROUNDING = 1 + 1e-8  # Rounding of third differences.
 
 
@@ -80,6 +81,16 @@ def violated_conditions(t: np.ndarray, q: np.ndarray) -> set[str]:
     return {name for name, where in broken.items() if where.any()}
 
 
+def violated_torque_conditions(torque: np.ndarray) -> set[str]:
+    """The conditions that the torques of consecutive commands [Nm] violate: limitRate() from zero, and the efforts."""
+    change = np.diff(torque, axis=0, prepend=np.zeros((1, 7)))
+    broken = {
+        "effort": abs(torque) > joint_limits("limit", "effort"),
+        "rate": abs(change) > example.DT * TORQUE_RATE * ROUNDING,
+    }
+    return {name for name, where in broken.items() if where.any()}
+
+
 def from_rest_to_rest(ticks: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Times [s] and positions, with three samples at rest before and after."""
     before, after = np.arange(-3, 0), ticks[-1] + np.arange(1, 4)
@@ -94,7 +105,7 @@ def schedule():
     os.sched_setscheduler(0, *before)
 
 
-def drive_robot():
+def drive_robot(stream=STREAM, torques=False):
     """A whole motion, and the joints' positions after it."""
     with ExitStack() as stack:
         try:
@@ -102,7 +113,7 @@ def drive_robot():
         except RuntimeError as error:
             pytest.skip(str(error))
         robot = franka.Robot(address, franka.RealtimeConfig.kIgnore)
-        return example.move(robot, PATH, STREAM), np.array(robot.read_once().q)
+        return example.move(robot, PATH, stream, torques=torques), np.array(robot.read_once().q)
 
 
 @pytest.fixture(scope="module")
@@ -113,6 +124,11 @@ def drive():
 @pytest.fixture(scope="module")
 def motion(drive):
     return drive[0]
+
+
+@pytest.fixture(scope="module")
+def by_torques():
+    return drive_robot(4.0, torques=True)[0]
 
 
 def commands(motion) -> tuple[np.ndarray, np.ndarray]:
@@ -127,6 +143,35 @@ def test_libfranka_rejects_no_command(motion):
     assert max(shares.values()) <= ROUNDING
     assert shares["velocity"] > 0.1  # The arm moved.
     assert shares["jerk"] < 0.2  # Unfiltered targets would exceed the bound.
+
+
+def test_libfranka_rejects_no_torque(by_torques):
+    torque = np.array(by_torques.torque)
+    assert len(torque) >= 6000 or by_torques.missed()
+    assert violated_torque_conditions(torque) == set()
+    arm = example.ARM.with_payload(0.73, com=(-0.01, 0, 0.03))  # The hand, without its inertia.
+    assert np.all(abs(torque + arm.gravity(np.array(by_torques.measured))) < joint_limits("limit", "effort"))
+    assert violated_conditions(*from_rest_to_rest(np.arange(len(by_torques.q)), np.array(by_torques.q))) == set()
+
+
+def test_the_torques_move_the_arm(by_torques):
+    off = abs(np.array(by_torques.q)[by_torques.sent] - by_torques.measured)
+    assert np.ptp(by_torques.measured, axis=0).max() > 0.2
+    assert np.quantile(off, 0.99, axis=0)[:4].max() < 5e-3  # 9 mrad without feed-forward.
+    assert off.max() < 0.02
+
+
+def test_the_robot_received_the_recorded_torques(by_torques):
+    sent = {tuple(np.float32(torque).tolist()) for torque in by_torques.torque}
+    unknown = [desired for desired in by_torques.desired if tuple(desired) not in sent]
+    assert len(unknown) < len(sent) / 2
+
+
+@pytest.mark.parametrize(("change", "conditions"), [(0.99, set()), (1.01, {"rate"}), (12.1, {"rate", "effort"})])
+def test_faults_of_torques_are_detected(change, conditions):
+    torque = np.zeros((10, 7))
+    torque[5:, 4] = change
+    assert violated_torque_conditions(torque) == conditions
 
 
 def limits_with_margin() -> fp.JointLimits:
@@ -288,10 +333,12 @@ class Interrupted:
         return self.left < 0
 
 
-def test_ctrl_c_stops_within_bounds(monkeypatch):
+@pytest.mark.parametrize("torques", [False, True])
+def test_ctrl_c_stops_within_bounds(monkeypatch, torques):
     monkeypatch.setattr(example, "interrupted", Interrupted(700))  # In the midst of the circle.
-    motion = drive_robot()[0]
+    motion = drive_robot(torques=torques)[0]
     assert len(motion.q) < 1500
+    assert violated_torque_conditions(np.reshape(motion.torque, (-1, 7))) == set()
     assert violated_conditions(*from_rest_to_rest(np.arange(len(motion.q)), np.array(motion.q))) == set()
 
 
