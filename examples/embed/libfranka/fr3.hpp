@@ -40,6 +40,12 @@ inline auto circle(double radius, double duration) {
       fpbm::InPlane(fpbm::Path(fpbm::Circle(radius), duration, fpbm::Quintic{}), {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}));
 }
 
+/// Inertia of the hand and the load that are configured in the robot, in the frame of the flange.
+inline fpbm::LinkInertia<> load(const franka::RobotState& state) {
+  return {state.m_total, Eigen::Map<const Eigen::Vector3d>(state.F_x_Ctotal.data()),
+          Eigen::Map<const Eigen::Matrix3d>(state.I_total.data())};
+}
+
 inline Joints joints(const std::array<double, 7>& values) {
   return Eigen::Map<const Eigen::Matrix<double, 7, 1>>(values.data());
 }
