@@ -144,7 +144,7 @@ def loaded(state: franka.RobotState) -> fp.SerialArm:
 def move(robot: franka.Robot, path: fp.Path = CIRCLE, seconds: float = 4.0, *, torques: bool = False) -> Motion:
     """Move along a path, then toward targets for some seconds, then stop. Raises the exceptions of libfranka."""
     state = robot.read_once()
-    arm, start = loaded(state), np.array(state.q)
+    arm, start = loaded(state) if torques else ARM, np.array(state.q)
     scheme = fp.FPBM(0.6, WEIGHTS, k1=20, k2=100, null_damping=4, rest_posture=start, null_stiffness=4)
     bounds = [fp.TorqueBounds(fraction=0.9)] if torques else []
     tracker = fp.Tracker(arm, scheme, start, task="pose", dt=DT, limits=LIMITS, bounds=bounds)
@@ -164,7 +164,8 @@ def move(robot: franka.Robot, path: fp.Path = CIRCLE, seconds: float = 4.0, *, t
         state, period = control.readOnce()
         for _ in range(round(period.to_sec() / DT)):
             tick = next(due)
-            feed_forward = tick.torque - arm.gravity(motion.q[-1])  # The robot adds gravity.
+            if torques:
+                feed_forward = tick.torque - arm.gravity(motion.q[-1])  # The robot adds gravity.
             motion.q.append(tick.q)
             motion.error.append(tick.error)
             motion.statuses[tick.status.name] += 1
