@@ -44,6 +44,9 @@ LIMITS = replace(
     jerk=ARM.limits.jerk - MARGIN,
     velocity_offset=ARM.limits.velocity_offset + MARGIN,
 )
+# The jerk determines the change of the feed-forward torques in a cycle: less than 0.7 Nm, also if a target jumps. With
+# 5000 rad/s^3, the change is more than 7 Nm (test_libfranka_rejects_no_feed_forward).
+TORQUE_LIMITS = replace(LIMITS, jerk=np.full(7, 250.0))
 TORQUE_STEP = DT * (1000 - MARGIN)  # Largest change of a torque in a cycle [Nm] (kMaxTorqueRate).
 # Stiffness [Nm/rad] and damping [Nm s/rad] of libfranka's example joint_impedance_control.cpp.
 STIFFNESS = np.array([600, 600, 600, 600, 250, 150, 50])
@@ -141,13 +144,19 @@ def loaded(state: franka.RobotState) -> fp.SerialArm:
     return ARM.with_payload(state.m_total, com=state.F_x_Ctotal, inertia=inertia)
 
 
+def tracker_of(arm: fp.SerialArm, start: np.ndarray, *, torques: bool) -> fp.Tracker:
+    """A tracker from the start. With torques, a tenth of the efforts is for the feedback."""
+    scheme = fp.FPBM(0.6, WEIGHTS, k1=20, k2=100, null_damping=4, rest_posture=start, null_stiffness=4)
+    limits = TORQUE_LIMITS if torques else LIMITS
+    bounds = [fp.TorqueBounds(fraction=0.9)] if torques else []
+    return fp.Tracker(arm, scheme, start, task="pose", dt=DT, limits=limits, bounds=bounds)
+
+
 def move(robot: franka.Robot, path: fp.Path = CIRCLE, seconds: float = 4.0, *, torques: bool = False) -> Motion:
     """Move along a path, then toward targets for some seconds, then stop. Raises the exceptions of libfranka."""
     state = robot.read_once()
     arm, start = loaded(state) if torques else ARM, np.array(state.q)
-    scheme = fp.FPBM(0.6, WEIGHTS, k1=20, k2=100, null_damping=4, rest_posture=start, null_stiffness=4)
-    bounds = [fp.TorqueBounds(fraction=0.9)] if torques else []
-    tracker = fp.Tracker(arm, scheme, start, task="pose", dt=DT, limits=LIMITS, bounds=bounds)
+    tracker = tracker_of(arm, start, torques=torques)
     motion = Motion([start])
     feed_forward = torque = np.zeros(arm.dof)
     due = ticks(tracker, path, stream(tracker.tip, seconds))

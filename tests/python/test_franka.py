@@ -25,6 +25,7 @@ example = importlib.import_module("11_franka")
 
 PATH = fp.Circle(0.05, 2.0, time_law="quintic").in_plane("xy")
 STREAM = 3.5  # [s]
+START = [0, -0.785, 0, -2.356, 0, 1.571, 0.785]
 
 # libfranka 0.15, include/franka/rate_limiting.h: kLimitEps, kMaxJointAcceleration, kMaxJointJerk, kMaxTorqueRate.
 EPS = 1e-3
@@ -167,6 +168,24 @@ def test_the_robot_received_the_recorded_torques(by_torques):
     assert len(unknown) < len(sent) / 2
 
 
+@pytest.mark.parametrize(("jerk", "least", "most"), [(250.0, 0.1, 0.7), (5000.0, 7.0, 12.0)])
+def test_libfranka_rejects_no_feed_forward(monkeypatch, jerk, least, most):
+    """6,000 cycles with targets that jump, by the feed-forward torques only."""
+    monkeypatch.setattr(example, "TORQUE_LIMITS", replace(example.TORQUE_LIMITS, jerk=np.full(7, jerk)))
+    arm = example.ARM.with_payload(0.73, com=(-0.01, 0, 0.03))
+    tracker = example.tracker_of(arm, START, torques=True)
+    start, random = tracker.tip, np.random.default_rng(4)
+    torque = []
+    for k in range(6000):
+        if k % 700 == 0:
+            target = start.copy()
+            target[:3, 3] += random.uniform(-0.2, 0.2, 3)
+        gravity = arm.gravity(tracker.q)
+        torque.append(tracker.tick(target).torque - gravity)
+    assert violated_torque_conditions(np.array(torque)) == ({"rate"} if least > 1 else set())
+    assert least < abs(np.diff(torque, axis=0)).max() < most  # [Nm]
+
+
 @pytest.mark.parametrize(("change", "conditions"), [(0.99, set()), (1.01, {"rate"}), (12.1, {"rate", "effort"})])
 def test_faults_of_torques_are_detected(change, conditions):
     torque = np.zeros((10, 7))
@@ -185,9 +204,6 @@ def limits_with_margin() -> fp.JointLimits:
         velocity_offset=joint_limits("position_based_velocity_limits", "velocity_offset") + margin,
         deceleration=joint_limits("position_based_velocity_limits", "deceleration_limit"),
     )
-
-
-START = [0, -0.785, 0, -2.356, 0, 1.571, 0.785]
 
 
 def test_libfranka_rejects_no_kept_path():

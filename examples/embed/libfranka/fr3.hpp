@@ -20,9 +20,10 @@ inline fpbm::SerialArm<7> arm() {
   return fpbm::SerialArm<7>(fpbm::presets::fr3());
 }
 
-/// All limits that the robot checks in a motion.
-inline Limits limits(double tick) {
+/// All limits that the robot checks in a motion. jerk: largest jerk [rad/s³].
+inline Limits limits(double tick, double jerk = 5000.0) {
   fpbm::JointLimits<7> bounds = arm().limits();
+  bounds.jerk.setConstant(jerk);
   for (Joints* row : {&bounds.velocity, &bounds.acceleration, &bounds.jerk}) row->array() -= kMargin;
   bounds.velocity_offset.array() += kMargin;
   return Limits(bounds, tick);

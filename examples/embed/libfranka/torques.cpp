@@ -15,6 +15,7 @@ namespace {
 // Stiffness [Nm/rad] and damping [Nm s/rad] of libfranka's example joint_impedance_control.cpp.
 const fr3::Joints kStiffness{600, 600, 600, 600, 250, 150, 50};
 const fr3::Joints kDamping{50, 50, 50, 50, 30, 25, 15};
+constexpr double kJerk = 250.0;    // [rad/s³]; with 5000, the torques of a tick may change by more than 1 Nm.
 constexpr double kFraction = 0.9;  // Part of the efforts for the reference; the remaining part is for the feedback.
 
 }  // namespace
@@ -37,8 +38,8 @@ int main(int argc, char** argv) {
     const fpbm::TrackerOptions<> options;  // A tick of 1 ms, as the robot's cycle.
     const fr3::Joints zero = fr3::Joints::Zero();
     const fpbm::State<7> at_rest{start, zero};
-    fpbm::Tracker tracker(fr3::arm(), fpbm::Pose{}, fr3::scheme(start), at_rest, options, fr3::limits(options.dt), zero,
-                          bounds);
+    fpbm::Tracker tracker(fr3::arm(), fpbm::Pose{}, fr3::scheme(start), at_rest, options,
+                          fr3::limits(options.dt, kJerk), zero, bounds);
     fpbm::PathFollower follower(fr3::circle(0.1, 5.0), tracker.tip());  // radius [m], duration [s]
     fpbm::Dynamics<7>::State state;
     fr3::Joints feed_forward = zero;
@@ -67,7 +68,7 @@ int main(int argc, char** argv) {
       return stopping && speed < 1e-9 ? franka::MotionFinished(command) : command;  // The robot holds its position.
     };
 
-    constexpr bool kLimitRate = true;  // The robot rejects torques that jump by more than 1 Nm in a tick.
+    constexpr bool kLimitRate = true;  // The robot rejects torques that change by more than 1 Nm in a tick.
     robot.control(callback, kLimitRate);
     std::printf("at worst: %s\n", message(worst));
     return failed(worst) ? 1 : 0;
