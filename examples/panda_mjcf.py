@@ -36,6 +36,7 @@ def panda(inertia_error: float = 0.0) -> fp.SerialArm:
 
 
 def panda_mjcf(
+    arm: fp.SerialArm | None = None,
     *,
     friction: float = 1.0,
     timestep: float = 2.5e-4,
@@ -43,9 +44,9 @@ def panda_mjcf(
 ) -> str:
     """MJCF of the Panda with a torque motor on each joint and a site "tip" at its flange.
 
-    friction: factor on all friction. The joints have no stops and the links do not collide: the simulation shows if a
-    joint leaves its range. placements: (4, 4) poses of the bases of several Pandas, by name, with the names of joints
-    and tips of Robot.from_arms().
+    arm: the Panda, for example with a payload; default: panda(). friction: factor on all friction. The joints have no
+    stops and the links do not collide: the simulation shows if a joint leaves its range. placements: (4, 4) poses of
+    the bases of several Pandas, by name, with the names of joints and tips of Robot.from_arms().
     """
     root = ElementTree.Element("mujoco", model="panda")
     _add(root, "compiler", angle="radian")
@@ -54,7 +55,7 @@ def panda_mjcf(
     _add(defaults, "geom", mass=0, contype=0, conaffinity=0, size=0.045, rgba=(0.9, 0.9, 0.9, 1))
     # As close to dry friction as the time step allows: with MuJoCo's default, a joint creeps.
     dry = {"solreffriction": (2 * timestep, 1), "solimpfriction": (0.99, 0.999, 1e-3)}
-    _add(defaults, "joint", axis=(0, 0, 1), damping=friction * VISCOUS, armature=ARMATURE, **dry)
+    _add(defaults, "joint", axis=(0, 0, 1), damping=friction * VISCOUS, **dry)
 
     world = _add(root, "worldbody")
     _add(world, "light", pos=(0.5, -1, 2), dir=(-0.3, 0.5, -1))
@@ -63,22 +64,25 @@ def panda_mjcf(
     for name, placement in placements.items():
         prefix = f"{name}_" if name else ""
         base = _add(world, "body", name=f"{prefix}base", **_frame(placement))
-        _add_arm(base, motors, prefix, friction)
+        _add_arm(base, motors, arm or panda(), prefix, friction)
     return ElementTree.tostring(root, encoding="unicode")
 
 
-def _add_arm(body: ElementTree.Element, motors: ElementTree.Element, prefix: str, friction: float) -> None:
-    for i, (joint, coulomb) in enumerate(zip(PANDA.joints, COULOMB), 1):
+def _add_arm(
+    body: ElementTree.Element, motors: ElementTree.Element, arm: fp.SerialArm, prefix: str, friction: float
+) -> None:
+    for i, (joint, coulomb) in enumerate(zip(arm.joints, COULOMB), 1):
         placement = np.asarray(joint.placement)
         _link(body, placement[:3, 3])
         body = _add(body, "body", name=f"{prefix}link{i}", **_frame(placement))
         (xx, xy, xz), (_, yy, yz), (_, _, zz) = joint.inertia
         _add(body, "inertial", mass=joint.mass, pos=joint.center, fullinertia=(xx, yy, zz, xy, xz, yz))
-        _add(body, "joint", name=f"{prefix}{joint.name}", frictionloss=friction * coulomb)
+        dry = friction * coulomb
+        _add(body, "joint", name=f"{prefix}{joint.name}", frictionloss=dry, armature=joint.rotor_inertia)
         _add(body, "geom", type="cylinder", size=(0.055, 0.06), rgba=(0.3, 0.3, 0.3, 1))
-    _link(body, PANDA.tip[:3, 3])
-    _add(body, "site", name=f"{prefix}tip", **_frame(PANDA.tip))
-    for joint, torque in zip(PANDA.joints, TORQUE.tolist()):
+    _link(body, arm.tip[:3, 3])
+    _add(body, "site", name=f"{prefix}tip", **_frame(arm.tip))
+    for joint, torque in zip(arm.joints, TORQUE.tolist()):
         joint_name = f"{prefix}{joint.name}"
         _add(motors, "motor", name=joint_name, joint=joint_name, forcerange=(-torque, torque))
 

@@ -16,12 +16,13 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "examples"))  # As for a scri
 example = importlib.import_module("08_mujoco_panda")
 panda_mjcf = importlib.import_module("panda_mjcf")
 tray = importlib.import_module("19_mujoco_tray")
+load = importlib.import_module("22_lift_a_load")
 
 HOME = example.HOME
 
 
-def model(**options):
-    compiled = mujoco.MjModel.from_xml_string(panda_mjcf.panda_mjcf(**options))
+def model(arm=None, **options):
+    compiled = mujoco.MjModel.from_xml_string(panda_mjcf.panda_mjcf(arm, **options))
     return compiled, mujoco.MjData(compiled)
 
 
@@ -173,3 +174,18 @@ def test_torque_control_keeps_a_grasp():
     assert rms[0] < 2e-3  # [m]
     assert rms[1] < 2e-3  # [rad]
     assert tracking.max() < 5e-3  # [m]
+
+
+@pytest.mark.parametrize(("case", "least", "most"), [("no bounds", 20e-3, 50e-3), ("bounds", 0.0, 1e-4)])
+def test_motors_lift_a_load_along_the_path_within_bounds_on_torque(case, least, most):
+    """Without friction: an error of the tip [m] is due to the bounds on the torques of the motors."""
+    compiled, data = model(load.ARM, friction=0.0)
+    q, qd, off = np.array(load.START), np.zeros(7), 0.0
+    data.qpos[:] = q
+    for tick in load.lift(load.CASES[case]):
+        qdd = tick.qdd + 100 * (qd - data.qvel) + 2500 * (q - data.qpos)
+        data.ctrl[:] = load.ARM.inverse_dynamics(data.qpos, data.qvel, qdd)
+        mujoco.mj_step(compiled, data, 4)
+        q, qd = tick.q, tick.qd
+        off = max(off, np.linalg.norm((load.ARM.forward(data.qpos) - load.ARM.forward(q))[:3, 3]))
+    assert least <= off < most
