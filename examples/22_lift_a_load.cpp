@@ -54,6 +54,6 @@ int main() {
   const bool done =
       lift("no bounds", dynamics, fpbm::Bounds<>()) &&
       lift("bounds", dynamics, fpbm::Bounds(fpbm::TorqueBounds<7>(kChain, dynamics, effort))) &&
-      lift("80 % of the bounds", dynamics, fpbm::Bounds(fpbm::TorqueBounds<7>(kChain, dynamics, 0.8 * effort)));
+      lift("90 % of the bounds", dynamics, fpbm::Bounds(fpbm::TorqueBounds<7>(kChain, dynamics, 0.9 * effort)));
   return done ? 0 : 1;
 }

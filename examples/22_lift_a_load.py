@@ -10,7 +10,7 @@ PATH = fp.Polyline([[0, 0, 0], [0, 0, 0.3], [0, 0.6, 0.3]], blend=0.1)  # [m]
 CASES = {
     "no bounds": [],
     "bounds": [fp.TorqueBounds()],
-    "80 % of the bounds": [fp.TorqueBounds(fraction=0.8)],
+    "90 % of the bounds": [fp.TorqueBounds(fraction=0.9)],
 }
 
 
