@@ -1,8 +1,9 @@
 """A Panda in MuJoCo with computed torque: circle, hold, push, two unreachable targets, and return to the start.
 
 Every millisecond, Tracker.resolve_measured() computes an acceleration within the joint limits from the measured state.
-With an exact model, the torques tau = M(q) qdd + h(q, qd) would realise this acceleration (computed torque). But in the
-controller's model, every mass and inertia is 2 % too large, and there is no friction.
+tick.torque are the torques tau = M(q) qdd + h(q, qd) of the library's model. With an exact model, these torques would
+realise this acceleration (computed torque). But in the controller's model, every mass and inertia is 2 % too large, and
+there is no friction.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from math import pi
 from typing import Any
 
 import numpy as np
-from panda_mjcf import TORQUE, panda_mjcf
+from panda_mjcf import TORQUE, panda, panda_mjcf
 
 import fpbm_cpp as fp
 
@@ -105,7 +106,7 @@ def simulate(
     end: float = END,
 ) -> Motion:
     tracker = fp.Tracker(
-        ARM,
+        panda(inertia_error),
         fp.FPBM(0.6, WEIGHTS, **scheme),
         HOME,
         task="pose",
@@ -115,20 +116,13 @@ def simulate(
         **integral,
     )
     arm = mujoco.MjModel.from_xml_string(panda_mjcf(friction=friction, timestep=DT / STEPS))
-    belief = mujoco.MjModel.from_xml_string(panda_mjcf(friction=0.0, inertia_error=inertia_error))
-    world, believed = mujoco.MjData(arm), mujoco.MjData(belief)
+    world = mujoco.MjData(arm)
     world.qpos[:] = HOME
 
     motion = Motion()
-    torque = np.zeros(ARM.dof)
     for t in DT * np.arange(round(end / DT)):
-        q, qd = world.qpos.copy(), world.qvel.copy()
-        tick = tracker.resolve_measured(q, qd, *reference(t))
-
-        believed.qpos[:], believed.qvel[:] = q, qd
-        mujoco.mj_forward(belief, believed)
-        mujoco.mj_mulM(belief, believed, torque, tick.qdd)
-        world.ctrl[:] = torque + believed.qfrc_bias  # MuJoCo limits the torques.
+        tick = tracker.resolve_measured(world.qpos, world.qvel, *reference(t))
+        world.ctrl[:] = tick.torque  # MuJoCo limits the torques.
 
         pushed = PHASES["push"] <= t < PHASES["push"] + PUSH_LASTS
         world.body("link4").xfrc_applied[:3] = PUSH if pushed else (0, 0, 0)

@@ -1,10 +1,13 @@
 """A Franka Research 3 at 1 kHz through libfranka: a circle, then targets at 30 Hz with irregular delays.
 
     python examples/11_franka.py                        with franky-sim, a simulated robot that this program starts
+    python examples/11_franka.py --torques              by torques instead of joint positions
     python examples/11_franka.py --robot 172.16.0.2     with a real robot
 
-The control loop of libfranka has a cycle of 1 ms and accepts joint positions. The robot rejects positions with a
-velocity, acceleration or jerk out of bounds. The tracker keeps its commands within all these bounds. From late and
+The control loop of libfranka has a cycle of 1 ms and accepts joint positions or torques. The robot rejects positions
+with a velocity, acceleration or jerk out of bounds, and torques that change by more than 1 Nm in a cycle. The tracker
+keeps its commands within all bounds on positions. The torques are tick.torque without gravity, which the robot adds,
+and a stiffness and a damping of the joints. TorqueBounds leave the feedback a tenth of the efforts. From late and
 irregular poses with gaps, a TargetFilter computes a motion that the arm can follow. This program has never run on a
 robot: start slowly, with the stop button at hand. Ctrl-C brings the arm to rest and ends the program.
 """
@@ -41,6 +44,13 @@ LIMITS = replace(
     jerk=ARM.limits.jerk - MARGIN,
     velocity_offset=ARM.limits.velocity_offset + MARGIN,
 )
+# The jerk determines the change of the feed-forward torques in a cycle: less than 0.7 Nm, also if a target jumps. With
+# 5000 rad/s^3, the change is more than 7 Nm (test_libfranka_rejects_no_feed_forward).
+TORQUE_LIMITS = replace(LIMITS, jerk=np.full(7, 250.0))
+TORQUE_STEP = DT * (1000 - MARGIN)  # Largest change of a torque in a cycle [Nm] (kMaxTorqueRate).
+# Stiffness [Nm/rad] and damping [Nm s/rad] of libfranka's example joint_impedance_control.cpp.
+STIFFNESS = np.array([600, 600, 600, 600, 250, 150, 50])
+DAMPING = np.array([50, 50, 50, 50, 30, 25, 15])
 WEIGHTS = [8, 8, 4, 4, 2, 1, 1]  # Larger near the base, where joints carry more.
 
 CIRCLE = fp.Circle(0.08, 3.0, time_law="quintic").in_plane("xy")  # radius [m], duration [s]
@@ -100,12 +110,14 @@ def ticks(tracker: fp.Tracker, path: fp.Path, targets: list[Target]) -> Iterator
 
 @dataclass
 class Motion:
-    """Joint positions of every tick [rad], indices and times of the commands, and results."""
+    """Joint positions of every tick [rad], indices, times and torques of the commands, and results."""
 
     q: list[np.ndarray]  # The first entry is the start posture.
     sent: list[int] = field(default_factory=list)  # Indices of the commands in q.
     time: list[float] = field(default_factory=list)  # Times of the commands by the robot's clock [s].
-    desired: list[list[float]] = field(default_factory=list)  # Commands that the robot reported at these times [rad].
+    desired: list[list[float]] = field(default_factory=list)  # Commands that the robot reported at these times.
+    torque: list[np.ndarray] = field(default_factory=list)  # Commands without gravity [Nm], with --torques.
+    measured: list[list[float]] = field(default_factory=list)  # Positions at these times [rad].
     error: list[np.ndarray] = field(default_factory=list)  # Tip errors relative to the path or the filter [m], [rad].
     statuses: Counter[str] = field(default_factory=Counter)
 
@@ -120,26 +132,49 @@ class Motion:
         used = {"position": abs(q - middle) / half}
         for order, name in enumerate(("velocity", "acceleration", "jerk"), 1):
             used[name] = abs(np.diff(q, order, axis=0)) / DT**order / getattr(LIMITS, name)
+        if self.torque:
+            used["torque"] = abs(np.array(self.torque)) / LIMITS.effort
+            used["change of torque"] = abs(np.diff(self.torque, axis=0, prepend=np.zeros((1, 7)))) / TORQUE_STEP
         return {name: float(share.max()) for name, share in used.items()}
 
 
-def move(robot: franka.Robot, path: fp.Path = CIRCLE, seconds: float = 4.0) -> Motion:
-    """Move along a path, then toward targets for some seconds, then stop. Raises the exceptions of libfranka."""
-    start = np.array(robot.read_once().q)
+def loaded(state: franka.RobotState) -> fp.SerialArm:
+    """The arm with the hand and the load that are configured in the robot."""
+    inertia = np.reshape(state.I_total, (3, 3))  # Symmetric.
+    return ARM.with_payload(state.m_total, com=state.F_x_Ctotal, inertia=inertia)
+
+
+def tracker_of(arm: fp.SerialArm, start: np.ndarray, *, torques: bool) -> fp.Tracker:
+    """A tracker from the start. With torques, a tenth of the efforts is for the feedback."""
     scheme = fp.FPBM(0.6, WEIGHTS, k1=20, k2=100, null_damping=4, rest_posture=start, null_stiffness=4)
-    tracker = fp.Tracker(ARM, scheme, start, task="pose", dt=DT, limits=LIMITS)
+    limits = TORQUE_LIMITS if torques else LIMITS
+    bounds = [fp.TorqueBounds(fraction=0.9)] if torques else []
+    return fp.Tracker(arm, scheme, start, task="pose", dt=DT, limits=limits, bounds=bounds)
+
+
+def move(robot: franka.Robot, path: fp.Path = CIRCLE, seconds: float = 4.0, *, torques: bool = False) -> Motion:
+    """Move along a path, then toward targets for some seconds, then stop. Raises the exceptions of libfranka."""
+    state = robot.read_once()
+    arm, start = loaded(state) if torques else ARM, np.array(state.q)
+    tracker = tracker_of(arm, start, torques=torques)
     motion = Motion([start])
+    feed_forward = torque = np.zeros(arm.dof)
     due = ticks(tracker, path, stream(tracker.tip, seconds))
     enough = (path.duration + seconds) / DT
     lost = stopping = finished = False
 
-    control = robot.start_joint_position_control(franka.ControllerMode.JointImpedance)
+    if torques:
+        control = robot.start_torque_control()
+    else:
+        control = robot.start_joint_position_control(franka.ControllerMode.JointImpedance)
     while not finished:
         # The tracker continues from its own command, which the robot follows, and does not use the measured state. The
         # first call has no tick. A call after lost packets has several ticks, because the robot continued to move.
         state, period = control.readOnce()
         for _ in range(round(period.to_sec() / DT)):
             tick = next(due)
+            if torques:
+                feed_forward = tick.torque - arm.gravity(motion.q[-1])  # The robot adds gravity.
             motion.q.append(tick.q)
             motion.error.append(tick.error)
             motion.statuses[tick.status.name] += 1
@@ -149,11 +184,19 @@ def move(robot: franka.Robot, path: fp.Path = CIRCLE, seconds: float = 4.0) -> M
             tracker.stop()
             stopping = True
         finished = stopping and speed < 1e-9
-        command = franka.JointPositions(motion.q[-1].tolist())
+        if torques:
+            feedback = STIFFNESS * (motion.q[-1] - state.q) + DAMPING * (tracker.qd - state.dq)
+            # Only after lost packets, the change exceeds the largest change.
+            torque = torque + np.clip(feed_forward + feedback - torque, -TORQUE_STEP, TORQUE_STEP)
+            motion.torque.append(torque)
+            command = franka.Torques(torque.tolist())
+        else:
+            command = franka.JointPositions(motion.q[-1].tolist())
         command.motion_finished = finished
         motion.sent.append(len(motion.q) - 1)
         motion.time.append(state.time.to_sec())
-        motion.desired.append(state.q_d)
+        motion.desired.append(state.tau_J_d if torques else state.q_d)
+        motion.measured.append(state.q)
         control.writeOnce(command)
     return motion
 
@@ -187,18 +230,23 @@ def report(motion: Motion) -> None:
     print(f"{len(motion.q)} cycles, {motion.missed()} of them missed; ticks: {statuses}")
     print(f"largest tip error: {tip.max():.4f} mm")
     print(f"{len(motion.sent)} commands sent; largest fraction of each limit: {shares}")
+    if motion.torque:
+        off = np.array(motion.q)[motion.sent] - motion.measured
+        print(f"joints off by at most {', '.join(f'{1e3 * largest:.1f}' for largest in abs(off).max(axis=0))} mrad")
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description="A circle, then targets at irregular times, through libfranka.")
     parser.add_argument("--robot", metavar="ADDRESS", help="a real robot instead of a simulated robot")
-    address = parser.parse_args().robot
+    parser.add_argument("--torques", action="store_true", help="torques instead of joint positions")
+    options = parser.parse_args()
     signal.signal(signal.SIGINT, lambda *_: interrupted.set())
-    if address is not None:
-        report(move(franka.Robot(address)))
+    if options.robot is not None:
+        report(move(franka.Robot(options.robot), torques=options.torques))
         return
     with simulator() as address:
-        report(move(franka.Robot(address, franka.RealtimeConfig.kIgnore)))  # A simulation needs no real-time kernel.
+        robot = franka.Robot(address, franka.RealtimeConfig.kIgnore)  # A simulation needs no real-time kernel.
+        report(move(robot, torques=options.torques))
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ from __future__ import annotations
 import sys
 
 import numpy as np
-from panda_mjcf import panda_mjcf
+from panda_mjcf import panda, panda_mjcf
 
 import fpbm_cpp as fp
 
@@ -22,27 +22,27 @@ try:
 except ModuleNotFoundError:
     sys.exit("this example needs MuJoCo: pip install mujoco")
 
-ROBOT = fp.Robot.preset("two_pandas")
-HANDS = ("right", "left")
 START = np.array([0.3, -0.6, 0, -2.4, 0, 1.8, 0.785, -0.3, -0.6, 0, -2.4, 0, 1.8, 0.785])  # [rad]
 STIFFNESS, DAMPING = 1e4, 200.0  # K_p [1/s²], K_d [1/s]
 DT = 1e-3  # A tick of the controller [s].
 STEPS = 4  # Simulation steps per tick.
 
 
-def placements() -> dict[str, np.ndarray]:
-    """Base poses of the arms, as in the preset."""
-    poses = {}
-    for hand, y in zip(HANDS, (-0.4, 0.4)):
-        poses[f"{hand}_"] = np.eye(4)
-        poses[f"{hand}_"][1, 3] = y
-    return poses
+def beside(y: float) -> np.ndarray:
+    """Pose of a base at this distance [m] from the middle."""
+    pose = np.eye(4)
+    pose[1, 3] = y
+    return pose
+
+
+PLACEMENTS = {"right": beside(-0.4), "left": beside(0.4)}
+ROBOT = fp.Robot.from_arms(dict.fromkeys(PLACEMENTS, panda(inertia_error=0.02)), PLACEMENTS)
 
 
 def relative_error(data: mujoco.MjData, grasp: np.ndarray) -> tuple[float, float]:
     """Distance [m] and angle [rad] of the left hand from its pose in the grasp."""
     poses = []
-    for hand in HANDS:
+    for hand in PLACEMENTS:
         site = data.site(f"{hand}_tip")
         poses.append(np.vstack([np.column_stack([site.xmat.reshape(3, 3), site.xpos]), [0, 0, 0, 1]]))
     off = np.linalg.inv(np.linalg.inv(poses[0]) @ poses[1]) @ grasp
@@ -61,19 +61,14 @@ def simulate(duration: float = 6.0, hold: float = 1.0) -> tuple[np.ndarray, np.n
     path, origin = tracker.follow(circle, task="tray"), ROBOT.forward(START, "right_tip")[:3, 3]
     grasp = np.linalg.inv(ROBOT.forward(START, "right_tip")) @ ROBOT.forward(START, "left_tip")
 
-    arms = mujoco.MjModel.from_xml_string(panda_mjcf(placements=placements(), timestep=DT / STEPS))
-    belief = mujoco.MjModel.from_xml_string(panda_mjcf(placements=placements(), friction=0.0, inertia_error=0.02))
-    world, believed = mujoco.MjData(arms), mujoco.MjData(belief)
+    arms = mujoco.MjModel.from_xml_string(panda_mjcf(placements=PLACEMENTS, timestep=DT / STEPS))
+    world = mujoco.MjData(arms)
     world.qpos[:] = START
-    torque = np.zeros(ROBOT.dof)
     relative, tracking = [], []
     for t in DT * np.arange(1, round((duration + hold) / DT) + 1):
         tick = tracker.tick({"tray": path})
-        believed.qpos[:], believed.qvel[:] = world.qpos, world.qvel
-        mujoco.mj_forward(belief, believed)
         qdd = tick.qdd + DAMPING * (tick.qd - world.qvel) + STIFFNESS * (tick.q - world.qpos)
-        mujoco.mj_mulM(belief, believed, torque, qdd)
-        world.ctrl[:] = torque + believed.qfrc_bias  # MuJoCo limits the torques.
+        world.ctrl[:] = ROBOT.inverse_dynamics(world.qpos, world.qvel, qdd)  # MuJoCo limits the torques.
         mujoco.mj_step(arms, world, STEPS)
         mujoco.mj_kinematics(arms, world)
         relative.append(relative_error(world, grasp))

@@ -25,11 +25,13 @@ example = importlib.import_module("11_franka")
 
 PATH = fp.Circle(0.05, 2.0, time_law="quintic").in_plane("xy")
 STREAM = 3.5  # [s]
+START = [0, -0.785, 0, -2.356, 0, 1.571, 0.785]
 
-# libfranka 0.15, include/franka/rate_limiting.h: kLimitEps, kMaxJointAcceleration, kMaxJointJerk.
+# libfranka 0.15, include/franka/rate_limiting.h: kLimitEps, kMaxJointAcceleration, kMaxJointJerk, kMaxTorqueRate.
 EPS = 1e-3
 ACCELERATION = 10.0 - EPS
 JERK = 5000.0 - EPS
+TORQUE_RATE = 1000.0 - EPS
 ROUNDING = 1 + 1e-8  # Rounding of third differences.
 
 
@@ -80,6 +82,16 @@ def violated_conditions(t: np.ndarray, q: np.ndarray) -> set[str]:
     return {name for name, where in broken.items() if where.any()}
 
 
+def violated_torque_conditions(torque: np.ndarray) -> set[str]:
+    """The conditions that the torques of consecutive commands [Nm] violate: limitRate() from zero, and the efforts."""
+    change = np.diff(torque, axis=0, prepend=np.zeros((1, 7)))
+    broken = {
+        "effort": abs(torque) > joint_limits("limit", "effort"),
+        "rate": abs(change) > example.DT * TORQUE_RATE * ROUNDING,
+    }
+    return {name for name, where in broken.items() if where.any()}
+
+
 def from_rest_to_rest(ticks: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Times [s] and positions, with three samples at rest before and after."""
     before, after = np.arange(-3, 0), ticks[-1] + np.arange(1, 4)
@@ -94,7 +106,7 @@ def schedule():
     os.sched_setscheduler(0, *before)
 
 
-def drive_robot():
+def drive_robot(stream=STREAM, torques=False):
     """A whole motion, and the joints' positions after it."""
     with ExitStack() as stack:
         try:
@@ -102,7 +114,7 @@ def drive_robot():
         except RuntimeError as error:
             pytest.skip(str(error))
         robot = franka.Robot(address, franka.RealtimeConfig.kIgnore)
-        return example.move(robot, PATH, STREAM), np.array(robot.read_once().q)
+        return example.move(robot, PATH, stream, torques=torques), np.array(robot.read_once().q)
 
 
 @pytest.fixture(scope="module")
@@ -113,6 +125,11 @@ def drive():
 @pytest.fixture(scope="module")
 def motion(drive):
     return drive[0]
+
+
+@pytest.fixture(scope="module")
+def by_torques():
+    return drive_robot(4.0, torques=True)[0]
 
 
 def commands(motion) -> tuple[np.ndarray, np.ndarray]:
@@ -129,6 +146,53 @@ def test_libfranka_rejects_no_command(motion):
     assert shares["jerk"] < 0.2  # Unfiltered targets would exceed the bound.
 
 
+def test_libfranka_rejects_no_torque(by_torques):
+    torque = np.array(by_torques.torque)
+    assert len(torque) >= 6000 or by_torques.missed()
+    assert violated_torque_conditions(torque) == set()
+    arm = example.ARM.with_payload(0.73, com=(-0.01, 0, 0.03))  # The hand, without its inertia.
+    assert np.all(abs(torque + arm.gravity(np.array(by_torques.measured))) < joint_limits("limit", "effort"))
+    assert violated_conditions(*from_rest_to_rest(np.arange(len(by_torques.q)), np.array(by_torques.q))) == set()
+
+
+def test_the_torques_move_the_arm(by_torques):
+    off = abs(np.array(by_torques.q)[by_torques.sent] - by_torques.measured)
+    assert np.ptp(by_torques.measured, axis=0).max() > 0.2
+    assert np.quantile(off, 0.99, axis=0)[:4].max() < 5e-3  # 9 mrad without feed-forward.
+    assert off.max() < 0.02
+
+
+def test_the_robot_received_the_recorded_torques(by_torques):
+    sent = {tuple(np.float32(torque).tolist()) for torque in by_torques.torque}
+    unknown = [desired for desired in by_torques.desired if tuple(desired) not in sent]
+    assert len(unknown) < len(sent) / 2
+
+
+@pytest.mark.parametrize(("jerk", "least", "most"), [(250.0, 0.1, 0.7), (5000.0, 7.0, 12.0)])
+def test_libfranka_rejects_no_feed_forward(monkeypatch, jerk, least, most):
+    """6,000 cycles with targets that jump, by the feed-forward torques only."""
+    monkeypatch.setattr(example, "TORQUE_LIMITS", replace(example.TORQUE_LIMITS, jerk=np.full(7, jerk)))
+    arm = example.ARM.with_payload(0.73, com=(-0.01, 0, 0.03))
+    tracker = example.tracker_of(arm, START, torques=True)
+    start, random = tracker.tip, np.random.default_rng(4)
+    torque = []
+    for k in range(6000):
+        if k % 700 == 0:
+            target = start.copy()
+            target[:3, 3] += random.uniform(-0.2, 0.2, 3)
+        gravity = arm.gravity(tracker.q)
+        torque.append(tracker.tick(target).torque - gravity)
+    assert violated_torque_conditions(np.array(torque)) == ({"rate"} if least > 1 else set())
+    assert least < abs(np.diff(torque, axis=0)).max() < most  # [Nm]
+
+
+@pytest.mark.parametrize(("change", "conditions"), [(0.99, set()), (1.01, {"rate"}), (12.1, {"rate", "effort"})])
+def test_faults_of_torques_are_detected(change, conditions):
+    torque = np.zeros((10, 7))
+    torque[5:, 4] = change
+    assert violated_torque_conditions(torque) == conditions
+
+
 def limits_with_margin() -> fp.JointLimits:
     """With a margin of A^2/(2 J) for the condition "approach": A^2/(2 J) is the velocity in which A fades to zero."""
     margin = EPS + ACCELERATION**2 / (2 * JERK)
@@ -140,9 +204,6 @@ def limits_with_margin() -> fp.JointLimits:
         velocity_offset=joint_limits("position_based_velocity_limits", "velocity_offset") + margin,
         deceleration=joint_limits("position_based_velocity_limits", "deceleration_limit"),
     )
-
-
-START = [0, -0.785, 0, -2.356, 0, 1.571, 0.785]
 
 
 def test_libfranka_rejects_no_kept_path():
@@ -288,10 +349,12 @@ class Interrupted:
         return self.left < 0
 
 
-def test_ctrl_c_stops_within_bounds(monkeypatch):
+@pytest.mark.parametrize("torques", [False, True])
+def test_ctrl_c_stops_within_bounds(monkeypatch, torques):
     monkeypatch.setattr(example, "interrupted", Interrupted(700))  # In the midst of the circle.
-    motion = drive_robot()[0]
+    motion = drive_robot(torques=torques)[0]
     assert len(motion.q) < 1500
+    assert violated_torque_conditions(np.reshape(motion.torque, (-1, 7))) == set()
     assert violated_conditions(*from_rest_to_rest(np.arange(len(motion.q)), np.array(motion.q))) == set()
 
 

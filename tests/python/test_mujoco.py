@@ -16,12 +16,13 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "examples"))  # As for a scri
 example = importlib.import_module("08_mujoco_panda")
 panda_mjcf = importlib.import_module("panda_mjcf")
 tray = importlib.import_module("19_mujoco_tray")
+load = importlib.import_module("22_lift_a_load")
 
 HOME = example.HOME
 
 
-def model(**options):
-    compiled = mujoco.MjModel.from_xml_string(panda_mjcf.panda_mjcf(**options))
+def model(arm=None, **options):
+    compiled = mujoco.MjModel.from_xml_string(panda_mjcf.panda_mjcf(arm, **options))
     return compiled, mujoco.MjData(compiled)
 
 
@@ -52,19 +53,18 @@ def test_the_model_equals_the_arm():
         np.testing.assert_allclose(J, example.ARM.jacobian(data.qpos, task="pose"), rtol=0, atol=1e-9)
 
 
-def test_the_dynamics_are_plausible():
-    compiled, data = model()
-    heavier, believed = model(inertia_error=0.02)
+@pytest.mark.parametrize("error", [0.0, 0.02])
+def test_the_controllers_dynamics_are_mujocos_except_for_the_error(error):
+    compiled, data = model(friction=0.0)
+    arm = panda_mjcf.panda(error)
     assert 15 < compiled.body_mass.sum() < 18  # [kg]; the data sheet says about 18 with the base.
-    for q, qd in states(100):
-        for m, d in ((compiled, data), (heavier, believed)):
-            d.qpos[:], d.qvel[:] = q, qd
-            mujoco.mj_forward(m, d)
+    for data.qpos[:], data.qvel[:] in states(100):
+        mujoco.mj_forward(compiled, data)
         M = mass_matrix(compiled, data)
-        np.testing.assert_allclose(M, M.T, atol=1e-12)
         assert np.linalg.eigvalsh(M)[0] > panda_mjcf.ARMATURE / 2
-        np.testing.assert_allclose(mass_matrix(heavier, believed), 1.02 * M, rtol=1e-9, atol=1e-12)
-        np.testing.assert_allclose(believed.qfrc_bias, 1.02 * data.qfrc_bias, rtol=1e-9, atol=1e-12)
+        np.testing.assert_allclose(arm.mass_matrix(data.qpos), (1 + error) * M, rtol=0, atol=1e-9)
+        bias = (1 + error) * data.qfrc_bias
+        np.testing.assert_allclose(arm.bias(data.qpos, data.qvel), bias, rtol=0, atol=1e-9)
 
 
 def test_friction_holds_a_joint_up_to_its_torque():
@@ -156,14 +156,14 @@ def test_a_mass_error_of_a_fifth_exceeds_the_tolerance():
 
 
 def test_two_models_equal_the_robot():
-    compiled, data = model(placements=tray.placements())
+    compiled, data = model(placements=tray.PLACEMENTS)
     names = [compiled.joint(i).name for i in range(compiled.njnt)]
     assert names == tray.ROBOT.joint_names
     rng = np.random.default_rng(2)
     for _ in range(100):
         data.qpos[:] = rng.uniform(tray.ROBOT.limits.lower, tray.ROBOT.limits.upper)
         mujoco.mj_kinematics(compiled, data)
-        for hand in tray.HANDS:
+        for hand in tray.PLACEMENTS:
             T = tray.ROBOT.forward(data.qpos, f"{hand}_tip")
             np.testing.assert_allclose(data.site(f"{hand}_tip").xpos, T[:3, 3], rtol=0, atol=1e-9)
 
@@ -174,3 +174,18 @@ def test_torque_control_keeps_a_grasp():
     assert rms[0] < 2e-3  # [m]
     assert rms[1] < 2e-3  # [rad]
     assert tracking.max() < 5e-3  # [m]
+
+
+@pytest.mark.parametrize(("case", "least", "most"), [("no bounds", 20e-3, 50e-3), ("bounds", 0.0, 1e-4)])
+def test_motors_lift_a_load_along_the_path_within_bounds_on_torque(case, least, most):
+    """Without friction: an error of the tip [m] is due to the bounds on the torques of the motors."""
+    compiled, data = model(load.ARM, friction=0.0)
+    q, qd, off = np.array(load.START), np.zeros(7), 0.0
+    data.qpos[:] = q
+    for tick in load.lift(load.CASES[case]):
+        qdd = tick.qdd + 100 * (qd - data.qvel) + 2500 * (q - data.qpos)
+        data.ctrl[:] = load.ARM.inverse_dynamics(data.qpos, data.qvel, qdd)
+        mujoco.mj_step(compiled, data, 4)
+        q, qd = tick.q, tick.qd
+        off = max(off, np.linalg.norm((load.ARM.forward(data.qpos) - load.ARM.forward(q))[:3, 3]))
+    assert least <= off < most

@@ -20,9 +20,10 @@ inline fpbm::SerialArm<7> arm() {
   return fpbm::SerialArm<7>(fpbm::presets::fr3());
 }
 
-/// All limits that the robot checks in a motion.
-inline Limits limits(double tick) {
+/// All limits that the robot checks in a motion. jerk: largest jerk [rad/s³].
+inline Limits limits(double tick, double jerk = 5000.0) {
   fpbm::JointLimits<7> bounds = arm().limits();
+  bounds.jerk.setConstant(jerk);
   for (Joints* row : {&bounds.velocity, &bounds.acceleration, &bounds.jerk}) row->array() -= kMargin;
   bounds.velocity_offset.array() += kMargin;
   return Limits(bounds, tick);
@@ -38,6 +39,12 @@ inline auto scheme(const Joints& posture) {
 inline auto circle(double radius, double duration) {
   return fpbm::WithRotation(
       fpbm::InPlane(fpbm::Path(fpbm::Circle(radius), duration, fpbm::Quintic{}), {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}));
+}
+
+/// Inertia of the hand and the load that are configured in the robot, in the frame of the flange.
+inline fpbm::LinkInertia<> load(const franka::RobotState& state) {
+  return {state.m_total, Eigen::Map<const Eigen::Vector3d>(state.F_x_Ctotal.data()),
+          Eigen::Map<const Eigen::Matrix3d>(state.I_total.data())};
 }
 
 inline Joints joints(const std::array<double, 7>& values) {

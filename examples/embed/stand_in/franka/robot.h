@@ -1,13 +1,13 @@
 #pragma once
 
 #include <franka/exception.h>
-#include <franka/model.h>
 #include <franka/robot_state.h>
 
 #include <functional>
 #include <string>
 
-// Stand-in for the header of libfranka with this name and control_types.h: a robot that follows commands exactly.
+// Stand-in for the header of libfranka with this name and control_types.h: a robot that follows positions exactly, and
+// under torques decoupled joints with an inertia of 1 kg m² each.
 namespace franka {
 
 enum class ControllerMode { kJointImpedance, kCartesianImpedance };
@@ -37,7 +37,6 @@ class Robot {
   explicit Robot(const std::string&) {}
 
   RobotState readOnce() { return state_; }
-  Model loadModel() { return {}; }
 
   void control(std::function<JointPositions(const RobotState&, Duration)> callback, ControllerMode, bool) {
     run(callback, [](RobotState& state, const JointPositions& command) {
