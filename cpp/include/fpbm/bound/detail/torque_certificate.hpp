@@ -43,7 +43,6 @@ class TorqueCertificate {
   /// tick.
   const TorqueState<N, Scalar>& begin(const Models& models, const State<N, Scalar>& state) noexcept {
     cost_ = 0;
-    wary_ = std::max(wary_ - 1, 0);
     if (!next().is_at(state)) return evaluated(here(), models, state);
     here_ = 1 - here_;
     return here();
@@ -56,9 +55,20 @@ class TorqueCertificate {
   /// Whether |τ| ≤ most in the tick from a state and in the stop after the tick.
   [[nodiscard]] bool keeps(const Models& models, const JointVector& most, const MotionLimits& limits,
                            const State<N, Scalar>& from, const StopOf& stop) noexcept {
-    const bool kept = keeps_stop(models, most, limits, from, stop);
-    if (!kept) wary_ = kWaryTicks;
-    return kept;
+    kept_fraction_ = Scalar(0);
+    if ((cost_ += kStop) > kLargestCost) return false;
+    StopPart<N, Scalar> part(stop.start, stop.plan.last());
+    if (!evaluated(here(), models, from).keeps(most, part.last)) return false;
+    if (!evaluated(next(), models, part.state).keeps(most, part.last)) return false;
+    auto plan = stop.plan;
+    likely_ = first_;
+    bool checked = false;
+    TorqueState<N, Scalar>* start = &next();
+    for (std::size_t k = 0; plan.ticks_left() > Scalar(0); k = k + 1 < kEnds ? k + 1 : k - 1) {
+      if (!keeps_part(models, most, limits, stop, *start, plan, part, k, checked)) return false;
+      start = &ends_[k];
+    }
+    return start != &next() || next().keeps(most, none_);  // If the tick ends at rest.
   }
 
   /// After keeps() was false: fraction of the decelerations with which the bounds are kept where they were exceeded. 0
@@ -77,31 +87,13 @@ class TorqueCertificate {
   /// Largest cost of a tick, so that a tick of a Panda takes less than 160,000 instructions. Of 60,000 ticks of a Panda
   /// with 3 kg at 80 % of its efforts, 12,805 continue the stop with 21, 4,152 with 42, and 2,608 with 84.
   static constexpr int kLargestCost = 42;
-  /// Number of ticks after a refused stop in which may_keep() is called: a choice.
-  static constexpr int kWaryTicks = 50;
-
-  [[nodiscard]] bool keeps_stop(const Models& models, const JointVector& most, const MotionLimits& limits,
-                                const State<N, Scalar>& from, const StopOf& stop) noexcept {
-    kept_fraction_ = Scalar(0);
-    if ((cost_ += kStop) > kLargestCost) return false;
-    StopPart<N, Scalar> part(stop.start, stop.plan.last());
-    if (!evaluated(here(), models, from).keeps(most, part.last)) return false;
-    if (!evaluated(next(), models, part.state).keeps(most, part.last)) return false;
-    auto plan = stop.plan;
-    if (wary_ > 0 && first_ < plan.ticks_left() && !may_keep(models, most, limits, plan, part)) return false;
-    likely_ = first_;
-    TorqueState<N, Scalar>* start = &next();
-    for (std::size_t k = 0; plan.ticks_left() > Scalar(0); k = k + 1 < kEnds ? k + 1 : k - 1) {
-      if (!keeps_part(models, most, limits, *start, plan, part, k)) return false;
-      start = &ends_[k];
-    }
-    return start != &next() || next().keeps(most, none_);  // If the tick ends at rest.
-  }
 
   /// Whether |τ| ≤ most at the end of the full deceleration, and with no acceleration there: most stops that exceed a
   /// bound exceed the bound there.
   [[nodiscard]] bool may_keep(const Models& models, const JointVector& most, const MotionLimits& limits,
-                              StopPlan<Level::kAcceleration, N, Scalar> plan, StopPart<N, Scalar> part) noexcept {
+                              const StopOf& stop) noexcept {
+    auto plan = stop.plan;
+    StopPart<N, Scalar> part(stop.start, plan.last());
     const Scalar ticks = plan.braking_ticks();
     if (!(ticks > Scalar(0))) return true;
     advance(plan, limits, ticks, part);
@@ -116,10 +108,11 @@ class TorqueCertificate {
   }
 
   /// Advances a plan and a part of the stop by as many ticks as are proved to keep the bounds. Returns whether any are.
-  /// start: torques near the start of the part. k: index of the part.
+  /// start: torques near the start of the part. k: index of the part. checked: whether may_keep() was true.
   [[nodiscard]] bool keeps_part(const Models& models, const JointVector& most, const MotionLimits& limits,
-                                TorqueState<N, Scalar>& start, StopPlan<Level::kAcceleration, N, Scalar>& plan,
-                                StopPart<N, Scalar>& part, std::size_t k) noexcept {
+                                const StopOf& stop, TorqueState<N, Scalar>& start,
+                                StopPlan<Level::kAcceleration, N, Scalar>& plan, StopPart<N, Scalar>& part,
+                                std::size_t k, bool& checked) noexcept {
     const auto from = part.state;
     const auto last = part.last;
     for (Scalar ticks = std::min(plan.ticks_left(), likely_); cost_ < kLargestCost;) {
@@ -154,6 +147,8 @@ class TorqueCertificate {
         if (slower) kept_fraction_ = start.kept_fraction(most, part.corners[part.corner_count - 1]);
         return false;
       }
+      if (!checked && !may_keep(models, most, limits, stop)) return false;
+      checked = true;
       ticks = std::max(std::floor(ticks * std::clamp(Scalar(0.9) * root, Scalar(0.2), Scalar(0.9))), Scalar(1));
       part.state = from;
       part.last = last;
@@ -191,7 +186,6 @@ class TorqueCertificate {
   Scalar likely_ = Scalar(1);  ///< Likely length of the next part [ticks].
   std::size_t here_ = 0;
   int cost_ = 0;
-  int wary_ = 0;
   Scalar kept_fraction_ = Scalar(0);
 };
 

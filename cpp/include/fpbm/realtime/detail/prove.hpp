@@ -13,12 +13,19 @@ template <typename TrackerState>
   using PlannedStop = std::decay_t<decltype(state.stop)>;
   const auto& from = state.tick.joints;
   const typename TrackerState::JointVector last = (next.qd - from.qd) / state.dt();
-  const Scalar first = state.stop.plan.next_fraction();
-  for (Scalar fraction = first; fraction > Scalar(0); fraction = state.bounds.slower_stop(fraction)) {
+  const auto accepted = [&](Scalar fraction) noexcept {
     const auto stop = PlannedStop::after(state.limits(), from, next, last, fraction);
-    if (!state.bounds.accepts(state.limits(), from, stop)) continue;
+    if (!state.bounds.accepts(state.limits(), from, stop)) return false;
     state.stop = stop;
     return true;
+  };
+  const Scalar first = state.stop.plan.next_fraction();
+  for (Scalar fraction = first; fraction > Scalar(0); fraction = state.bounds.slower_stop(fraction)) {
+    if (accepted(fraction)) return true;
+  }
+  // A faster stop ends nearer.
+  for (Scalar fraction(1); first < Scalar(1) && fraction > first; fraction = state.bounds.slower_stop(fraction)) {
+    if (accepted(fraction)) return true;
   }
   return false;
 }
