@@ -183,7 +183,7 @@ class TorqueDeviation {
   Drives<N, Joints, Scalar> drives_;
   Levers<Scalar> levers_;
   std::array<int, static_cast<std::size_t>(kCapacity<Joints>)> parents_{};  ///< Of each joint, −1 on the base.
-  bool tree_ = false;                                                       ///< Whether the robot is no chain.
+  bool tree_ = false;                                                       ///< Whether the robot has branches.
   JointVector viscous_;                                                     ///< [Nm s/rad]
   JointVector rotors_;                                                      ///< [kg m²]
   AllJoints sign_;    ///< Signs of the ratios of the joints to their drives.

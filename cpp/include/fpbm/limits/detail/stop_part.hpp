@@ -27,8 +27,9 @@ struct StopPart {
   /// Before the first part, of a state that is reached with the accelerations `before`. Only `state` and `last` are
   /// set.
   StopPart(const State<N, Scalar>& from, const Vector<N, Scalar>& before) : state(from), last(before) {
-    for (auto* each : {&low, &high, &speed, &corners[0], &corners[1], &corners[2], &corners[3]})
+    for (auto* each : {&low, &high, &speed, &corners[0], &corners[1], &corners[2], &corners[3]}) {
       each->resize(before.size());
+    }
   }
 };
 
