@@ -60,7 +60,7 @@ struct RandomRobot {
 TEST(TorqueDeviation, bounds_the_torques_between_two_ends) {
   Random random(2);
   double closest = 0.0;
-  for (int trial = 0; trial < trials(2000); ++trial) {
+  for (int trial = 0; trial < 2000; ++trial) {
     const auto robot = RandomRobot::with(random, trial % 4 == 0, trial % 4 == 1);
     const auto n = robot.n;
     JointLimits<kOpen> bounds = JointLimits<kOpen>::none(n);
@@ -116,7 +116,7 @@ TEST(TorqueDeviation, bounds_the_torques_near_an_evaluated_state) {
   for (const Case& each : kCases) {
     Random random(3);
     double closest = 0.0;
-    for (int trial = 0; trial < trials(2000); ++trial) {
+    for (int trial = 0; trial < 2000; ++trial) {
       const auto robot = RandomRobot::with(random, each.gravity, each.friction);
       const auto n = robot.n;
       const double size = std::pow(10.0, random.uniform(-4.0, -0.3));
