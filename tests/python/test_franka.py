@@ -156,6 +156,8 @@ def test_libfranka_rejects_no_torque(by_torques):
 
 
 def test_the_torques_move_the_arm(by_torques):
+    if by_torques.missed():
+        pytest.skip(f"no command in {by_torques.missed()} milliseconds: the arm moved on its own")
     off = abs(np.array(by_torques.q)[by_torques.sent] - by_torques.measured)
     assert np.ptp(by_torques.measured, axis=0).max() > 0.2
     assert np.quantile(off, 0.99, axis=0)[:4].max() < 5e-3  # 9 mrad without feed-forward.
