@@ -149,6 +149,7 @@ class TorqueCertificate {
       }
       if (!checked && !may_keep(models, most, limits, stop)) return false;
       checked = true;
+      // The factors 0.9 and 0.85 leave a margin for the next attempt: choices.
       ticks = std::max(std::floor(ticks * std::clamp(Scalar(0.9) * root, Scalar(0.2), Scalar(0.9))), Scalar(1));
       part.state = from;
       part.last = last;

@@ -30,6 +30,7 @@ struct TorqueState {
     }
   };
 
+  /// Largest result of kept_part(): the next part is at most √9 times as long. A choice.
   static constexpr Scalar kMostKept = Scalar(9);
 
   State<N, Scalar> at;
@@ -64,7 +65,7 @@ struct TorqueState {
   }
 
   /// Largest f, at most kMostKept, with |τ_i| + f more_i ≤ most_i for all accelerations of a part, and, if the part
-  /// ends at rest, for u = 0. Negative or NaN if |τ_i| exceeds most_i.
+  /// ends at rest, for u = 0. Negative if |τ_i| exceeds most_i.
   template <typename Part>
   [[nodiscard]] Scalar kept_part(const JointVector& most, const Part& part, const JointVector& more,
                                  bool rests) const noexcept {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "fpbm/core/detail/quickest_stop.hpp"
 #include "fpbm/limits/detail/braking.hpp"
