@@ -81,6 +81,9 @@ class Stream {
     return true;
   }
 
+  /// Range of coordinate i [rad, m].
+  [[nodiscard]] Range<Scalar> range(int i) const noexcept { return axes_.range(i); }
+
   /// Reduces the bounds on velocity to a fraction of the bounds of the constructor, until the next call. A faster
   /// target is followed with a lag. If the fraction is not in (0, 1], returns false without an effect.
   bool set_speed(Scalar fraction) noexcept {

@@ -82,6 +82,7 @@ struct AxesOf<JointSpace<M>, Scalar> {
   Bounds limits;
 
   AxesOf(const Bounds& bounds, Scalar dt) : limits(bounds.complete()) {
+    validation::require_positive("dt", dt);
     for (int i = 0; i < M; ++i) {
       const auto finite = [&](const char* name, Scalar bound) {
         const validation::Argument argument = validation::element(name, i);
