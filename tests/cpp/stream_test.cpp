@@ -113,6 +113,7 @@ TYPED_TEST(Streams, keep_their_bounds_for_any_chunks) {
       const auto count = static_cast<int>(chunk.size());
       const double when = stamp + random.uniform(-0.05, 0.05);
       const double what = random.uniform(0.0, 1.0);
+      if (random.uniform(0.0, 1.0) < 0.1) ASSERT_TRUE(stream.set_speed(static_cast<Scalar>(random.uniform(0.01, 1.0))));
       if (what < 0.1) {
         chunk[chunk.size() / 2].time = static_cast<Scalar>(kNaN);
         ASSERT_FALSE(stream.push_chunk(chunk.data(), count, when));

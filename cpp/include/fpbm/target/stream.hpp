@@ -56,18 +56,17 @@ class Stream {
   /// whose time has passed have no effect. Returns false for a rejected chunk, which has no effect: a point is not
   /// usable (is_usable()), a number is not finite, the times do not increase, there are more than kPoints points, or
   /// the stamp is not newer than all stamps before, or too far ahead (StampClock).
-  bool push_chunk(const Timed* points, int count, double stamp) noexcept {
-    return is_chunk(points, count) && take(clock_.accept(stamp), points, count);
-  }
-  bool push_chunk(const Timed* points, int count) noexcept {
-    return is_chunk(points, count) && take(clock_.hear_now(), points, count);
+  bool push_chunk(const Timed* points, int count, std::optional<double> stamp = {}) noexcept {
+    return is_chunk(points, count) && heard(stamp) &&
+           schedule_.replace(points, count, [this](const Point& x) noexcept { return usable(x); });
   }
 
   /// Point observed at a time `stamp` [s]; default: the current time. The reference passes the point options.delay
   /// later, and continues after the newest point at constant velocity until the timeout. Returns false for a rejected
   /// point, as push_chunk().
-  bool push(const Point& x, double stamp) noexcept { return is_usable(x) && take(clock_.accept(stamp), x); }
-  bool push(const Point& x) noexcept { return is_usable(x) && take(clock_.hear_now(), x); }
+  bool push(const Point& x, std::optional<double> stamp = {}) noexcept {
+    return is_usable(x) && heard(stamp) && schedule_.extend(delay_, usable(x));
+  }
 
   /// Whether a point is finite, with a rotation R, and at most a tenth of the width of a joint's range outside this
   /// range. Joints outside their range move to the end of the range. A larger distance is a mistake, such as degrees.
@@ -81,9 +80,7 @@ class Stream {
     return true;
   }
 
-  /// Range of coordinate i [rad, m].
   [[nodiscard]] Range<Scalar> range(int i) const noexcept { return axes_.range(i); }
-
   /// Reduces the bounds on velocity to a fraction of the bounds of the constructor, until the next call. A faster
   /// target is followed with a lag. If the fraction is not in (0, 1], returns false without an effect.
   bool set_speed(Scalar fraction) noexcept {
@@ -99,10 +96,8 @@ class Stream {
     return seconds == Scalar(0) ? reference_ : step(seconds).to;
   }
   [[nodiscard]] Scalar dt() const noexcept { return dt_; }
-
-  /// Time since the newest stamp [s].
+  /// Time since the newest stamp [s], and displacement from the reference to the target [m, rad].
   [[nodiscard]] Scalar age() const noexcept { return clock_.age(); }
-  /// Displacement from the reference to the target [m, rad].
   [[nodiscard]] Twist gap() const noexcept { return compensation_.difference(target().x, reference_.x); }
 
   /// Advances by one tick.
@@ -170,15 +165,11 @@ class Stream {
     return point;
   }
 
-  [[nodiscard]] bool take(std::optional<Scalar> elapsed, const Timed* points, int count) noexcept {
-    if (!elapsed) return false;
-    schedule_.shift(*elapsed, clock_.age());
-    return schedule_.replace(points, count, [this](const Point& x) noexcept { return usable(x); });
-  }
-  [[nodiscard]] bool take(std::optional<Scalar> elapsed, const Point& x) noexcept {
-    if (!elapsed) return false;
-    schedule_.shift(*elapsed, clock_.age());
-    return schedule_.extend(delay_, usable(x));
+  /// Processes a stamp; no stamp: the current time. Returns whether the stamp is accepted.
+  [[nodiscard]] bool heard(std::optional<double> stamp) noexcept {
+    const std::optional<Scalar> elapsed = stamp ? clock_.accept(*stamp) : clock_.hear_now();
+    if (elapsed) schedule_.shift(*elapsed, clock_.age());
+    return elapsed.has_value();
   }
 
   /// The target stops in minimum time.

@@ -24,8 +24,8 @@ struct MovingAxis {
 /// minimum time within the parts of the bounds that the motion of the target does not need (TimeOptimalAxis). An axis
 /// on the target therefore stays on the target. Otherwise, the axis approaches the target in the frame that moves at
 /// the velocity of the target, as if the target had no acceleration. The end of the quickest stop of the axis never
-/// leaves the range of the target's points in which it lies, and never moves away from this range: the axis does not
-/// overshoot and ends within the range, also after the last point.
+/// leaves the range of the remaining points of the target, and outside of this range, never moves away from the range:
+/// the axis does not overshoot, and ends within the range, also after the last point.
 template <typename Scalar>
 struct JoiningAxis {
   TimeOptimalAxis<Scalar> axis;

@@ -50,9 +50,9 @@ class ScheduledTarget {
   }
 
   /// Replaces the points from the first of `count` points on, whose times increase. After the last point, the target is
-  /// at rest, unless it was extended point by point: extended is the number of such points, at most
-  /// kMemory. usable: changes a point to
-  /// a point that the target may pass. Returns false without an effect if there is not enough memory.
+  /// at rest, unless it was extended point by point: extended: number of these points, at most
+  /// kMemory. usable: changes a point to a point that the target may pass. Returns false without an effect if there is
+  /// not enough memory.
   template <typename Usable>
   [[nodiscard]] bool replace(const Timed* points, int count, const Usable& usable, int extended = 0) noexcept {
     const std::size_t first = before(points[0].time);
