@@ -69,7 +69,7 @@ class WatchedFilter {
     const auto displacement = Space::template difference<Scalar>(now.x, before.x);
     // A rotation that joins a stream curves within a tick.
     constexpr bool kStreams = std::is_same_v<Space, Pose> && !std::is_same_v<Filter, TargetFilter<Space, Scalar>>;
-    constexpr Scalar kCurved = kStreams ? Scalar(1.1) : Scalar(1.001);
+    constexpr Scalar kCurved = kStreams ? Scalar(3) : Scalar(1.001);
     constexpr Scalar kEpsilon = std::numeric_limits<Scalar>::epsilon();
     for (int i = 0; i < Space::kRows; ++i) {
       const auto [V, stop] = axes_(i);

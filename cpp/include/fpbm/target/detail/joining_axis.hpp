@@ -23,8 +23,8 @@ struct MovingAxis {
 /// If the target itself keeps the bounds, the axis moves with the target, and the difference to the target vanishes in
 /// minimum time within the parts of the bounds that the motion of the target does not need (TimeOptimalAxis). An axis
 /// on the target therefore stays on the target. Otherwise, the axis approaches the target in the frame that moves at
-/// the velocity of the target, as if the target had no acceleration. The end of the quickest stop of the axis never
-/// leaves the range of the remaining points of the target, and outside of this range, never moves away from the range:
+/// the velocity of the target, as if the target had no acceleration. The quickest stop of the axis never leaves the
+/// range of the remaining points of the target, and if it is outside of this range, never moves away from the range:
 /// the axis does not overshoot, and ends within the range, also after the last point.
 template <typename Scalar>
 struct JoiningAxis {
@@ -47,10 +47,11 @@ struct JoiningAxis {
       on_target = to.q == error && to.v == Scalar(0) && to.a == Scalar(0);
       return AxisState<Scalar>{to.q + moved.q, to.v + moved.v, to.a + moved.a};
     };
-    const Scalar end_now = axis.stop.end_position(from);
+    const Range<Scalar> now = extremes(from);
     const auto stays = [&](const AxisState<Scalar>& to) noexcept {
-      const Scalar end = axis.stop.end_position(to);
-      return end <= std::max(range.high, end_now) + tolerance && end >= std::min(range.low, end_now) - tolerance;
+      const Range<Scalar> stop = extremes(to);
+      return stop.high <= std::max(range.high + tolerance, now.high) &&
+             stop.low >= std::min(range.low - tolerance, now.low);
     };
     if (may_join) {
       const AxisState<Scalar> end = joined(tick, target.end);
@@ -64,11 +65,24 @@ struct JoiningAxis {
     };
     const AxisState<Scalar> end = chasing(tick);
     if (stays(end)) return seconds == tick ? end : chasing(seconds);
-    const Scalar edge = axis.stop.end_position(end) > end_now ? range.high : range.low;
+    const Scalar edge = extremes(end).high > std::max(range.high + tolerance, now.high) ? range.high : range.low;
     return axis.approach(from, edge, Scalar(0), seconds, tolerance);
   }
 
  private:
+  /// Extreme positions of the quickest stop: its end and, if the velocity changes its sign before, the point of zero
+  /// velocity.
+  [[nodiscard]] Range<Scalar> extremes(const AxisState<Scalar>& state) const noexcept {
+    const Scalar end = axis.stop.end_position(state);
+    Range<Scalar> reached{end, end};
+    const Scalar a = std::abs(state.a);
+    const Scalar root = a * a - Scalar(2) * axis.stop.jerk * std::abs(state.v);
+    if (state.v * state.a < Scalar(0) && root > Scalar(0)) {
+      reached.include(state.ahead((a - std::sqrt(root)) / axis.stop.jerk, std::copysign(axis.stop.jerk, state.v)).q);
+    }
+    return reached;
+  }
+
   /// Axis with the parts of the bounds that the target does not need in the tick. Between the ends of the tick, the
   /// acceleration of the target exceeds the accelerations at the ends by at most half of the jerk times the tick.
   [[nodiscard]] TimeOptimalAxis<Scalar> spare_axis(const MovingAxis<Scalar>& target) const noexcept {

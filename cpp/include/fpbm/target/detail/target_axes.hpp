@@ -130,7 +130,7 @@ class TargetAxes {
         if (!schedule.continues()) range = schedule.range_after(piece, now, start.x, i).within(range);
         range = range.from(coordinate(from.x, i));
       }
-      const JoiningAxis<Scalar> joining{axis, range, h, axis.tolerance(relative, size, h)};
+      const JoiningAxis<Scalar> joining{axis, range, h, axis.tolerance(relative, size, h, kPart)};
       bool on_target = false;
       motion.set(i, joining.after(seconds, own, error(i), target, on_target));
       motion.arrived = motion.arrived && on_target;
@@ -140,6 +140,8 @@ class TargetAxes {
 
  private:
   static constexpr int kLengths = Axes::kLengths;
+  /// TimeOptimalAxis::tolerance() of joints: jerks by differences exceed their bound by less than 1e-9 of the bound.
+  static constexpr Scalar kPart = kIsJointSpace<Space> ? Scalar(1e-10) : Scalar(1e-6);
   static constexpr bool kRotates = Space::kRows - kLengths == 3;
 
   /// Fixed axis about which an orientation rotates to a target without angular velocity, if possible.
