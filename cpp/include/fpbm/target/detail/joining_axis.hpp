@@ -70,11 +70,12 @@ struct JoiningAxis {
   }
 
  private:
-  /// Extreme positions of the quickest stop: its end and, if the velocity changes its sign before, the point of zero
-  /// velocity.
+  /// Extreme positions of the quickest stop: its start, its end and, if the velocity changes its sign before, the point
+  /// of zero velocity.
   [[nodiscard]] Range<Scalar> extremes(const AxisState<Scalar>& state) const noexcept {
     const Scalar end = axis.stop.end_position(state);
     Range<Scalar> reached{end, end};
+    reached.include(state.q);
     const Scalar a = std::abs(state.a);
     const Scalar root = a * a - Scalar(2) * axis.stop.jerk * std::abs(state.v);
     if (state.v * state.a < Scalar(0) && root > Scalar(0)) {
