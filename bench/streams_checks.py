@@ -51,6 +51,8 @@ class Libfranka:
 
     def violated(self, q: Array) -> set[str]:
         """Conditions that postures violate, one posture in each millisecond."""
+        if not np.isfinite(q).all():
+            return {"finite"}
         return self._conditions(1e-3 * np.arange(len(q)), q)
 
     def first_abort(self, q: Array) -> int | None:
