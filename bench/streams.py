@@ -58,12 +58,16 @@ def print_rides(title: str, rides: Sequence[Any]) -> None:
             [
                 name,
                 *map(total, ("received", "accepted", "raised", "ticks")),
-                *map(most, ("position", "velocity", "acceleration", "jerk")),
+                *map(most, ("position", "velocity", "acceleration", "jerk", "exact_jerk")),
                 f"{nearest:.1e}" if np.isfinite(nearest) else "",
             ]
         )
-    headings = ["robot", "chunks", "accepted", "of a wrong shape", "ticks", "excess of position", "velocity"]
-    print_table(title, [*headings, "acceleration", "jerk", "smallest distance beyond the margin [m]"], rows)
+    headings = ["robot", "chunks", "accepted", "errors", "ticks", "excess of position", "velocity"]
+    print_table(
+        title,
+        [*headings, "acceleration", "jerk", "jerk without rounding", "smallest distance beyond the margin [m]"],
+        rows,
+    )
 
 
 def print_rejoins(rejoins: Sequence[Any]) -> None:
@@ -75,23 +79,26 @@ def print_rejoins(rejoins: Sequence[Any]) -> None:
 
 
 def print_quality(found: Sequence[Any]) -> None:
-    rows = [[f"{each.rate:g}", each.kind, f"{1e3 / each.rate:.0f}", f"{1e3 * each.delay:.0f}"] for each in found]
-    for row, each in zip(rows, found):
-        row += [f"{1e3 * (each.delay - 1 / each.rate):.0f}", f"{each.ripple:.3f}"]
-    headings = ["rate [Hz]", "stream", "period [ms]", "delay [ms]", "delay beyond a period [ms]", "ripple"]
-    print_table("Steady streams", headings, rows)
+    rows = []
+    for rate, kind in dict.fromkeys((each.rate, each.kind) for each in found):
+        own = [each for each in found if (each.rate, each.kind) == (rate, kind)]
+        delay, ripple = max(each.delay for each in own), [each.ripple for each in own]
+        times = [f"{1e3 * value:.0f}" for value in (1 / rate, delay, delay - 1 / rate)]
+        rows.append([kind, f"{rate:g}", len(own), *times, f"{np.median(ripple):.3f}", f"{max(ripple):.3f}"])
+    headings = ["stream", "rate [Hz]", "tasks", "period [ms]", "delay [ms]", "delay beyond a period [ms]"]
+    print_table("Steady streams", [*headings, "ripple, median", "largest"], rows)
 
 
 def print_forwarders(found: Sequence[tuple[str, str, float, bool]]) -> None:
     rows = []
     for stream in dict.fromkeys(each[0] for each in found):
         row = [stream]
-        for name in ("held", "linear", "JointStream"):
+        for name in ("held", "linear", "JointStream", "Tracker"):
             own = [each for each in found if each[:2] == (stream, name)]
             aborted, seconds = sum(each[3] for each in own), sum(each[2] for each in own)
             row.append(f"{aborted} of {len(own)}, {3600 * aborted / max(seconds, 1e-3):,.0f}")
         rows.append(row)
-    headings = ["stream", "each posture held", "interpolated linearly", "JointStream"]
+    headings = ["stream", "each posture held", "interpolated linearly", "JointStream", "Tracker with a JointStream"]
     print_table("Motions aborted by libfranka, and aborts per hour of motion", headings, rows)
 
 
@@ -103,7 +110,7 @@ def print_wifi(found: Sequence[tuple[float, Any, Any]]) -> None:
         worst = [f"{max(each[2][kind] for each in own):.1e}" for kind in ("velocity", "acceleration", "jerk")]
         rows.append([f"{1e3 * delay:.0f}", len(own), *still, *worst])
     headings = ["option delay [ms]", "motions", "longest gap of the stream [ms]", "longest time at rest [ms]"]
-    headings += ["of it after an arrival [ms]", "excess of velocity", "acceleration", "jerk"]
+    headings += ["after an arrival [ms]", "excess of velocity", "acceleration", "jerk"]
     print_table("Teleoperation at 72 Hz over Wi-Fi", headings, rows)
 
 
@@ -147,7 +154,8 @@ def main() -> int:
                 print_rides(title, sorted(run(partial(ride, given.seed, each, guarded), -(-chunks // each))))
         if given.count:
             print_rejoins(run(partial(rejoin, given.seed), given.count))
-            asked = [(given.seed, rate, kind) for kind in KINDS for rate in (5.0, 10.0, 20.0, 30.0, 50.0)]
+            rates, tasks = (5.0, 10.0, 20.0, 30.0, 50.0), range(max(1, given.count // 10))
+            asked = [(given.seed, rate, kind, number) for kind in KINDS for rate in rates for number in tasks]
             print_quality(pool.starmap(quality, asked))
             print_forwarders([row for rows in run(partial(forwarders, given.seed, 10.0), given.count) for row in rows])
             print_wifi(

@@ -70,7 +70,8 @@ def streams(
 
 def forwarders(seed: int, seconds: float, number: int) -> list[tuple[str, str, float, bool]]:
     """Rows of stream, forwarder, motion time until an abort [s], and whether the motion was aborted."""
-    libfranka, home = Libfranka(), machine("fr3").home
+    libfranka, fr3 = Libfranka(), machine("fr3")
+    home = fr3.home
     found = []
     for stream in streams(libfranka.limits, home, np.random.default_rng(0)):
 
@@ -81,8 +82,9 @@ def forwarders(seed: int, seconds: float, number: int) -> list[tuple[str, str, f
         for name, linear in {"held": False, "linear": True}.items():
             given, rate = messages()
             motions[name] = forward(home, given, seconds, linear=linear, rate=rate, dt=1e-3)
-        shield = Shield(machine("fr3").arm, home, messages()[0], limits=libfranka.limits, dt=1e-3)
-        motions["JointStream"] = np.vstack([home, shield.block(round(seconds / 1e-3))])
+        for name, tracked in {"JointStream": False, "Tracker": True}.items():
+            shield = Shield(fr3.arm, home, messages()[0], limits=libfranka.limits, dt=1e-3, tracked=tracked)
+            motions[name] = np.vstack([home, shield.block(round(seconds / 1e-3))])
         for name, q in motions.items():
             abort = libfranka.first_abort(q)
             found.append((stream, name, seconds if abort is None else 1e-3 * abort, abort is not None))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +17,12 @@ DT = 1e-3
 REJOINED = 1e-6  # Distance from the stream [rad].
 PERIOD = 1 / 30  # Time between the postures of a chunk to rejoin [s].
 # Steady streams, and the option delay in periods.
-KINDS = {"chunks": (steady, 0.0), "postures": (postures, 0.0), "postures, delay of a period": (postures, 1.0)}
+KINDS = {
+    "chunks": (steady, 0.0),
+    "chunks with velocities": (partial(steady, velocities=True), 0.0),
+    "postures": (postures, 0.0),
+    "postures, delay of a period": (postures, 1.0),
+}
 
 
 def least_time(limits: fp.JointLimits, off: Array, qd: Array, qdd: Array, v: Array) -> float:
@@ -47,10 +53,10 @@ def rejoin(seed: int, number: int) -> Rejoin:
     made = machine(("panda", "fr3")[number % 2])
     limits, n = made.limits, made.arm.dof
     stream = fp.JointStream(made.arm, made.home, limits=limits, dt=DT, start=0.0)
-    v = rng.uniform(-0.15, 0.15, n) * limits.velocity
-    times = PERIOD * np.arange(90)
+    v = rng.uniform(-0.1, 0.1, n) * limits.velocity
+    times = PERIOD * np.arange(60)
     jump = bool(rng.random() < 0.5)
-    ticks = int(rng.integers(1000, 1500))
+    ticks = int(rng.integers(500, 1000))
     now = DT * ticks
     if jump:
         target = made.home + rng.uniform(*JUMP, n) * rng.choice([-1, 1], n)
@@ -62,7 +68,7 @@ def rejoin(seed: int, number: int) -> Rejoin:
     state = np.array(stream.q), np.array(stream.qd), np.array(stream.qdd)
     stream.push_chunk(target + v * times[:, None], period=PERIOD, stamp=now)
     last = 0
-    for k in range(1, 2500):
+    for k in range(1, 1500):
         stream.advance()
         if np.abs(stream.q - target - v * (k * DT)).max() > REJOINED:
             last = k
@@ -76,13 +82,13 @@ class Quality(NamedTuple):
     ripple: float
 
 
-def quality(seed: int, rate: float, kind: str) -> Quality:
+def quality(seed: int, rate: float, kind: str, number: int) -> Quality:
     """Delay and ripple of a steady stream.
 
     The delay is the displacement in time with the least mean square of the distance from the task. The ripple is the
     root mean square of the deviation from the acceleration of the delayed task, relative to this acceleration.
     """
-    rng = np.random.default_rng([seed, int(rate)])
+    rng = np.random.default_rng([seed, number, 7])
     made = machine("panda")
     task = Task(made.limits, made.home, rng)
     source, delay = KINDS[kind]

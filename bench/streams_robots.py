@@ -46,6 +46,7 @@ class Ride(NamedTuple):
     velocity: float
     acceleration: float
     jerk: float
+    exact_jerk: float  # The same without the rounding of the postures.
     distance: float  # Smallest distance of a pair beyond the margin [m]; infinity without a clearance.
 
 
@@ -60,7 +61,7 @@ def ride(seed: int, count: int, guarded: bool, number: int) -> Ride:
         bounds = (fp.Clearance.preset(name, obstacles=[fp.HalfSpace([0, 0, 1], 0.0, name="table")]),)
     task = Task(made.limits, made.home, rng, fraction=rng.uniform(0.1, 1.0))
     messages = hostile(task, rng, made.limits)
-    shield = Shield(made.arm, made.home, messages, limits=made.limits, dt=dt, bounds=bounds)
+    shield = Shield(made.arm, made.home, messages, limits=made.limits, dt=dt, tracked=guarded, bounds=bounds)
     check = Differences(made.home, made.limits, dt)
     while shield.received < count:
         check.add(shield.block(BLOCK))
@@ -70,7 +71,7 @@ def ride(seed: int, count: int, guarded: bool, number: int) -> Ride:
         shield.received,
         shield.accepted,
         shield.raised,
-        *(check.excess[kind] for kind in KINDS),
+        *(check.excess[kind] for kind in (*KINDS, "exact jerk")),
         shield.distance - bounds[0].margin if guarded else np.inf,
     )
 
@@ -82,13 +83,16 @@ class Hours(NamedTuple):
 
 
 def franka_hours(seed: int, hours: float, number: int) -> Hours:
-    """An FR3 with a hostile stream at 1 kHz, checked by the conditions of libfranka."""
+    """An FR3 with a hostile stream at 1 kHz, checked by the conditions of libfranka.
+
+    A tracker keeps the bounds on velocity that depend on the position.
+    """
     libfranka = Libfranka()
     rng = np.random.default_rng([seed, number, 2])
     made = machine("fr3")
     task = Task(libfranka.limits, made.home, rng, fraction=0.5)
     messages = hostile(task, rng, libfranka.limits)
-    shield = Shield(made.arm, made.home, messages, limits=libfranka.limits, dt=1e-3)
+    shield = Shield(made.arm, made.home, messages, limits=libfranka.limits, dt=1e-3, tracked=True)
     last, broken = np.tile(made.home, (3, 1)), []
     while shield.ticks < hours * 3.6e6:
         q = np.vstack([last, shield.block(6 * BLOCK)])

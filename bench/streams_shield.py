@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from streams_sources import Array, Message
 
 import fpbm_cpp as fp
+
+SHARE = 0.95  # Accelerations and jerks of a stream, relative to the limits of the tracker that follows the stream.
 
 
 class Shield:
@@ -22,30 +25,34 @@ class Shield:
         *,
         limits: fp.JointLimits,
         dt: float,
-        bounds: tuple[Any, ...] = (),
+        tracked: bool = False,
+        bounds: Sequence[Any] = (),
         **options: Any,
     ) -> None:
-        self.stream = fp.JointStream(arm, q0, limits=limits, dt=dt, start=0.0, **options)
+        """With `tracked`, a tracker follows the stream, within the bounds."""
+        slower = replace(limits, acceleration=SHARE * limits.acceleration, jerk=SHARE * limits.jerk)
+        given = slower if tracked else limits
+        self.stream = fp.JointStream(arm, q0, limits=given, dt=dt, start=0.0, **options)
         self.messages, self.dt = messages, dt
         self.next = next(messages)
         self.ticks = self.received = self.accepted = self.raised = 0
         self.distance = np.inf  # Smallest distance of a pair [m].
         self.tracker = None
-        if bounds:
-            n = len(q0)
+        if tracked:
             stack = fp.Stack(fp.PostureTask(q0, name="posture", k1=20.0, k2=100.0))
-            scheme = fp.FPBM(0.6, np.ones(n), 0.0, 0.0, null_damping=2.0)  # Of a stack, whose tasks have gains.
+            scheme = fp.FPBM(0.6, np.ones(len(q0)), 0.0, 0.0)  # The tasks of a stack have the gains.
             self.tracker = fp.Tracker(arm, scheme, q0, stack=stack, limits=limits, dt=dt, bounds=list(bounds))
 
     def push(self, message: Message) -> None:
         self.received += 1
         try:
             if message.period:
-                taken = self.stream.push_chunk(message.postures, period=message.period, stamp=message.stamp)
+                timing = {"period": message.period, "stamp": message.stamp}
+                taken = self.stream.push_chunk(message.postures, velocities=message.velocities, **timing)
             else:
-                taken = self.stream.push(np.asarray(message.postures)[0], stamp=message.stamp)
-        except (ValueError, TypeError, IndexError):
-            self.raised += 1  # A wrong shape.
+                taken = self.stream.push(message.postures[0], stamp=message.stamp)
+        except (ValueError, IndexError):
+            self.raised += 1  # A wrong shape, or far out of range.
             return
         self.accepted += taken
 
@@ -74,7 +81,7 @@ class Shield:
     def tick(self, q: Array, begin: int, end: int) -> None:
         assert self.tracker is not None
         for k in range(begin, end):
-            tick = self.tracker.tick({"posture": self.stream})
+            tick = self.tracker.tick(self.stream)
             q[k] = tick.q
             if tick.nearest is not None:
                 self.distance = min(self.distance, tick.nearest.distance)

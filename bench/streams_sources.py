@@ -32,6 +32,7 @@ class Message(NamedTuple):
     stamp: float  # Time of the observation [s].
     postures: Any  # (k, n) [rad]; a faulty message may have other shapes.
     period: float  # [s]
+    velocities: Array | None = None  # (k, n) [rad/s]
 
     def sound(self, dof: int) -> bool:
         """Whether a receiver without a library would forward the message."""
@@ -57,12 +58,15 @@ class Task:
         return self.q0 + ramp**3 * (10 - 15 * ramp + 6 * ramp**2) * moved
 
 
-def steady(task: Task, period: float, horizon: int = 32) -> Iterator[Message]:
-    """Chunks without a fault: each chunk arrives before the previous chunk ends, and continues it."""
-    executed = horizon // 2
+def steady(task: Task, period: float, *, velocities: bool = False) -> Iterator[Message]:
+    """Chunks of 32 postures without a fault: each chunk arrives in the middle of the previous chunk, and continues it.
+
+    With `velocities`, the chunks contain the velocities of the task.
+    """
     for k in range(10**9):
-        stamp = executed * k * period
-        yield Message(stamp, stamp, task(stamp + period * np.arange(horizon)), period)
+        times = period * (16 * k + np.arange(32))
+        rates = (task(times + 1e-5) - task(times - 1e-5)) / 2e-5 if velocities else None
+        yield Message(times[0], times[0], task(times), period, rates)
 
 
 def postures(task: Task, period: float) -> Iterator[Message]:
@@ -114,8 +118,9 @@ def hostile(task: Task, rng: np.random.Generator, limits: fp.JointLimits) -> Ite
     held: Message | None = None
     for message in policy(task, rng):
         given = message.postures
-        if rng.random() < 0.1:  # Targets that the arm cannot follow, also out of range.
-            message = message._replace(postures=given + rng.normal(0, 0.3, given.shape) * span)
+        if rng.random() < 0.1:  # Postures that the arm cannot follow, up to a tenth of a range out of range.
+            wild = given + rng.normal(0, 0.3, given.shape) * span
+            message = message._replace(postures=np.clip(wild, limits.lower - 0.099 * span, limits.upper + 0.099 * span))
         elif rng.random() < 0.1:
             message = message._replace(period=0.0, postures=given[:1])
         if held is not None:  # The older chunk arrives after the newer chunk.
