@@ -15,7 +15,7 @@ import numpy as np
 from ._core import JointStream
 from ._types import Array
 from .arms import Arm
-from .errors import wrong
+from .errors import ParameterError, wrong
 from .joints import JointLimits
 from .robots import Robot
 
@@ -87,6 +87,9 @@ class SafeRobot:
     motor bus, with its calibration. limits replaces the limits of each arm. dt, timeout and delay are as for
     JointStream.
 
+    Actions that are not finite, of a wrong shape, out of order or far out of range are rejected: `rejected` is the
+    number of these actions and chunks, and `problem` is the cause of the last rejection.
+
     A SafeRobot has all attributes of the robot, so that loops of LeRobot accept a SafeRobot instead of the robot. No
     thread is started.
     """
@@ -106,6 +109,7 @@ class SafeRobot:
         seen = robot.get_observation()
         self.robot, self.dt = robot, dt
         self.rejected = 0  # Number of rejected actions and chunks.
+        self.problem = ""  # Cause of the last rejection.
         options = {"limits": limits, "dt": dt, "timeout": timeout, "delay": delay}
         self._parts = [_Part(robot, prefix, arm, units, seen, **options) for prefix, arm in given.items()]
         of_arms = {key for part in self._parts for key in part.keys}
@@ -143,8 +147,7 @@ class SafeRobot:
 
         action is a new action, a new chunk of actions, or None. A chunk is a sequence of actions, or an array whose
         columns are in the order of `robot.action_features`. period is the time between the actions of a chunk. stamp
-        is the time of the observation, and of the first action; by default, now. Actions with a number that is not
-        finite, and arrays of a wrong shape, are rejected: `rejected` is their number.
+        is the time of the observation, and of the first action; by default, now.
         """
         if self._origin is None:
             self._origin = now - self.dt
@@ -166,17 +169,31 @@ class SafeRobot:
         if not single and period is None:
             raise wrong("period", period, " = None: a chunk needs the time between its actions [s]")
         table = self._table([action] if single else action)
-        taken = table.shape[1:] == (len(self._keys),) and len(table) > 0 and bool(np.isfinite(table).all())
-        for part in self._parts if taken else ():
+        problem = self._problem(table, period, stamp, single)
+        if problem:
+            self.rejected, self.problem = self.rejected + 1, problem
+            return
+        rows = table[:, [self._keys.index(key) for key in self._others]].tolist()
+        self._waiting = [(stamp + k * (period or 0.0), row) for k, row in enumerate(rows)]
+
+    def _problem(self, table: Array, period: float | None, stamp: float, single: bool) -> str:
+        """Gives the actions to the streams. Returns the cause of a rejection; empty if all streams accept."""
+        if table.shape[1:] != (len(self._keys),) or not len(table):
+            return f"shape {table.shape}: must be (k, {len(self._keys)})"
+        if not np.isfinite(table).all():
+            return "a number is not finite"
+        for part in self._parts:
             q = part.units.radians(table[:, [self._keys.index(key) for key in part.keys]])
-            if single:
-                taken &= part.stream.push(q[0], stamp=stamp)
-            else:
-                taken &= part.stream.push_chunk(q, period=period, stamp=stamp)
-        self.rejected += not taken
-        if taken:
-            rows = table[:, [self._keys.index(key) for key in self._others]].tolist()
-            self._waiting = [(stamp + k * (period or 0.0), row) for k, row in enumerate(rows)]
+            try:
+                if single:
+                    taken = part.stream.push(q[0], stamp=stamp)
+                else:
+                    taken = part.stream.push_chunk(q, period=period, stamp=stamp)
+            except ParameterError as error:  # Far out of the range of a joint, as in other units.
+                return str(error)
+            if not taken:
+                return "the stamp is not newer than the last stamp, or from the future"
+        return ""
 
     def _table(self, actions: Any) -> Array:
         """Actions as rows, in the order of the keys; an empty table if the rows differ in length."""

@@ -184,6 +184,17 @@ def test_a_faulty_chunk_changes_nothing(fault):
     assert (motions[0] == motions[1]).all()
 
 
+def test_other_units_are_a_named_problem():
+    safe = safe_robot(Follower())
+    safe.step(action_of(90.0), 0.0)
+    assert safe.rejected == 1
+    assert "are the units radians" in safe.problem
+    safe.step(action_of(0.1), DT)
+    safe.step(action_of(0.1), DT)
+    assert safe.rejected == 2
+    assert "stamp" in safe.problem
+
+
 def test_a_pause_of_the_loop_is_not_a_motion():
     follower = Follower()
     safe = safe_robot(follower, timeout=10.0)
