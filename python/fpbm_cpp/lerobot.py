@@ -85,7 +85,7 @@ class SafeRobot:
     keys to the arm: {"left_": arm, "right_": arm}. The names of the joints are the names of the motors. Keys of other
     motors, such as a gripper, are sent without a change. units is 'radians' or 'degrees', or None for the units of the
     motor bus, with its calibration. limits replaces the limits of each arm. dt, timeout and delay are as for
-    JointStream.
+    JointStream: for single actions, a delay of the period of the loop makes the motion smooth.
 
     Actions that are not finite, of a wrong shape, out of order or far out of range are rejected: `rejected` is the
     number of these actions and chunks, and `problem` is the cause of the last rejection.

@@ -165,6 +165,17 @@ def test_two_arms_have_two_streams():
         assert_bounds_kept(sent_joints(follower, prefix))
 
 
+def test_each_of_two_arms_has_a_motor_bus():
+    follower = Follower(prefixes=("left_", "right_"))
+    for side, mode in {"left": "degrees", "right": "range_m100_100"}.items():
+        setattr(follower, f"{side}_arm", SimpleNamespace(bus=Bus([mode] * 6)))
+    follower.position = dict.fromkeys(follower.position, 10.0)
+    safe = safe_robot(follower, {"left_": ARM, "right_": ARM}, units=None)
+    spans = [2300 - 20 * k for k in range(5)]
+    np.testing.assert_allclose(safe.streams[0].q, np.radians(10.0), rtol=1e-12)
+    np.testing.assert_allclose(safe.streams[1].q, 0.05 * 2 * np.pi * np.array(spans) / (RESOLUTION - 1), rtol=1e-12)
+
+
 NO_GRIPPER = np.column_stack([np.zeros((5, 5)), np.full(5, np.nan)])
 
 
