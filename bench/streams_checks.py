@@ -57,7 +57,8 @@ class Libfranka:
         """Conditions that postures violate, one posture in each millisecond."""
         if not np.isfinite(q).all():
             return {"finite"}
-        return self._conditions(1e-3 * np.arange(len(q)), q)
+        with np.errstate(over="ignore", invalid="ignore"):  # Forwarded postures of any magnitude.
+            return self._conditions(1e-3 * np.arange(len(q)), q)
 
     def first_abort(self, q: Array) -> int | None:
         """Number of postures that the robot executes from rest before a condition is violated; None if all."""
