@@ -17,7 +17,7 @@ BENCHMARK := /usr/include/benchmark/benchmark.h:libbenchmark-dev
 CXX_SOURCES = $(shell find cpp python tests bench examples web ros2 -name '*.[ch]pp')
 
 .DELETE_ON_ERROR:
-.PHONY: help demo page test homes test-cpp test-python test-docs test-view clang sanitize nightly arm64 arm64-wheel windows macos cross firmware packages fuzz soak motions grasp inverse fastest torque dynamics peers lint \
+.PHONY: help demo page test homes test-cpp test-python test-docs test-view clang sanitize nightly arm64 arm64-wheel windows macos cross firmware packages fuzz soak motions grasp inverse fastest torque streams dynamics peers lint \
         prose format stubs docs notebooks bench count stalls worst sdist wheel clean
 
 help:
@@ -40,6 +40,7 @@ help:
 	@echo 'make inverse          inverse kinematics: solved poses and times, compared with other libraries'
 	@echo 'make fastest          motions in the least time: bounds, distance from the path, comparison with TOPP-RA'
 	@echo 'make torque           random motions within bounds on torque, and the time that the bounds cost'
+	@echo 'make streams          streams of joint postures with faults: bounds, delay, aborts by libfranka; compared with forwarders'
 	@echo 'make dynamics         dynamics: errors relative to Pinocchio, and times'
 	@echo 'make peers            the programs of docs/coming_from.md, in environments of their own'
 	@echo 'make fuzz             look for input that breaks the tracker, for SECONDS=$(SECONDS)'
@@ -180,6 +181,11 @@ fastest: $(VENV)/package $(VENV)/test
 torque: $(VENV)/package $(VENV)/peers
 	$(BIN)/python -m pip install --quiet --no-compile 'tsid>=1.10'
 	$(BIN)/python bench/torque.py --count 12000 --price 200 --workers $(JOBS)
+
+# A million chunks, and a day of an FR3 at 1 kHz. Needs hours.
+streams: $(VENV)/package $(VENV)/test
+	$(BIN)/python -m pip install --quiet --no-compile --group franka 'ruckig>=0.10'
+	$(BIN)/python bench/streams.py --chunks 1000000 --guarded 100000 --hours 24 --count 400 --workers $(JOBS)
 
 # The tables of docs/dynamics.md: robots from URDF files and random trees, compared with Pinocchio.
 dynamics: $(VENV)/peers $(VENV)/bench
