@@ -6,5 +6,6 @@
 int main() {
   const auto print = [](const char* text) { std::fputs(text, stdout); };
   const auto nothing = [] { return std::uint32_t{0}; };
-  return failed(firmware::report_all(print, nothing)) ? 1 : 0;
+  firmware::Motions motions;
+  return failed(firmware::report_all(motions, print, nothing)) ? 1 : 0;
 }

@@ -63,9 +63,13 @@ std::uint32_t used_stack() {
 
 int run() {
   mark_stack();
+  static firmware::Motions motions;  // As in a controller: the stack contains only the ticks.
+  const std::uint32_t construction = used_stack();
+  mark_stack();
   Counter counter;
-  const fpbm::Status worst = firmware::report_all(semihosting::write, counter);
+  const fpbm::Status worst = firmware::report_all(motions, semihosting::write, counter);
   firmware::Line line;
-  semihosting::write((line << "# stack: " << used_stack() << " bytes\n").text());
+  line << "# stack: " << used_stack() << " bytes, at construction " << construction << " bytes\n";
+  semihosting::write(line.text());
   return failed(worst) ? 1 : 0;
 }

@@ -46,8 +46,8 @@ class Line {
 };
 
 /// print(text) writes a text. counter() returns the number of instructions, or 0.
-template <int N, typename Print, typename Counter>
-fpbm::Status report(const char* name, Motion<N>& motion, const Print& print, Counter&& counter) {
+template <typename Motion, typename Print, typename Counter>
+fpbm::Status report(const char* name, Motion& motion, const Print& print, Counter&& counter) {
   fpbm::Status worst = fpbm::Status::kOk;
   float error = 0.0F;
   std::uint32_t most = 0;
@@ -63,7 +63,7 @@ fpbm::Status report(const char* name, Motion<N>& motion, const Print& print, Cou
     if (i % 1000 != 0) continue;
     Line line;
     line << name;
-    for (int joint = 0; joint < N; ++joint) line << " " << motion.q()(joint);
+    for (int joint = 0; joint < Motion::kDof; ++joint) line << " " << motion.q()(joint);
     print((line << "\n").text());
   }
   Line line;
@@ -77,18 +77,15 @@ fpbm::Status report(const char* name, Motion<N>& motion, const Print& print, Cou
   return worst;
 }
 
-/// Both arms on slow circles within the limits, then on wide and fast circles on which joints meet their limits.
+/// Reports all motions.
 template <typename Print, typename Counter>
-fpbm::Status report_all(const Print& print, Counter&& counter) {
-  // The trackers are static, as in a controller, so that the stack contains only the ticks.
-  static Motion<7> panda = panda_motion(0.1F, 10.0F);
-  static Motion<6> ur5e = ur5e_motion(0.1F, 10.0F);
-  static Motion<7> panda_pressed = panda_motion(0.25F, 2.0F);
-  static Motion<6> ur5e_pressed = ur5e_motion(0.25F, 2.0F);
-  fpbm::Status worst = report("panda", panda, print, counter);
-  worst = worse(worst, report("ur5e", ur5e, print, counter));
-  worst = worse(worst, report("panda_pressed", panda_pressed, print, counter));
-  return worse(worst, report("ur5e_pressed", ur5e_pressed, print, counter));
+fpbm::Status report_all(Motions& motions, const Print& print, Counter&& counter) {
+  fpbm::Status worst = report("panda", motions.panda, print, counter);
+  worst = worse(worst, report("ur5e", motions.ur5e, print, counter));
+  worst = worse(worst, report("panda_pressed", motions.panda_pressed, print, counter));
+  worst = worse(worst, report("ur5e_pressed", motions.ur5e_pressed, print, counter));
+  worst = worse(worst, report("panda_torques", motions.panda_torques, print, counter));
+  return worse(worst, report("panda_torques_pressed", motions.panda_torques_pressed, print, counter));
 }
 
 }  // namespace firmware

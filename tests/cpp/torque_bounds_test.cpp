@@ -266,6 +266,16 @@ TEST(TorqueBounds, hold_for_every_mass_between_two) {
   for (const Excess& each : excess) EXPECT_LE(each.ends, 1e-9);
 }
 
+/// A long name is cut to at most 31 bytes, between two characters.
+TEST(DriveNames, are_cut_between_characters) {
+  Chain<> chain = presets::panda();
+  chain.joints[0].name = std::string(30, 'a') + "\xC3\xA9";
+  chain.joints[1].name = "";
+  const DriveNames<kN> names(chain);
+  EXPECT_EQ(names[0].text(), "joint '" + std::string(30, 'a') + "'");
+  EXPECT_EQ(names[1].text(), "joints[1]");
+}
+
 /// The derivative of the torques at rest is the gradient, for chains with any gravity.
 TEST(TorqueBounds, gaps_have_gradients) {
   Random random(3);

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "fpbm/bound/bounds.hpp"
+#include "fpbm/bound/detail/drive_names.hpp"
 #include "fpbm/bound/detail/gravity_gradient.hpp"
 #include "fpbm/bound/detail/torque_certificate.hpp"
+#include "fpbm/bound/detail/torque_models.hpp"
 #include "fpbm/model/dynamics.hpp"
 
 namespace fpbm {
@@ -37,7 +36,7 @@ class TorqueBounds {
   template <typename Source>
   TorqueBounds(const Source& source, const Model& model, const JointVector& effort,
                const std::optional<Model>& lighter = {})
-      : models_(models_of(model, lighter)), effort_(effort), most_(effort), certificate_(source, models_) {
+      : models_(model, lighter), effort_(effort), most_(effort), names_(source), certificate_(source, models_) {
     validation::require_size("effort", effort.size(), model.dof());
     require_inertia(source);
     JointVector dry = filled<JointVector>(effort.size());
@@ -47,14 +46,10 @@ class TorqueBounds {
       const JointVector of_drives = model.robot().drives().by_drive(of_joint);
       for (Eigen::Index k = 0; k < dry.size(); ++k) dry(k) += std::abs(of_drives(k));
     }
-    for (std::size_t i = 0; i < source.joints.size(); ++i) {
-      const auto& joint = joint_of(source, static_cast<Eigen::Index>(i));
-      if (joint.mimic.joint < 0) names_.push_back(chain_check::name_of(source, static_cast<Eigen::Index>(i)).text());
-    }
     for (Eigen::Index i = 0; i < effort.size(); ++i) {
       if (!(effort(i) > dry(i))) {
-        validation::fail(validation::element("effort", i), effort(i), "greater than the dry friction of ",
-                         names_[static_cast<std::size_t>(i)], " = ", dry(i));
+        validation::fail(validation::element("effort", i), effort(i), "greater than the dry friction of ", names_[i],
+                         " = ", dry(i));
       }
       most_(i) -= dry(i);
     }
@@ -68,7 +63,7 @@ class TorqueBounds {
   }
   [[nodiscard]] const Model& model() const noexcept { return models_.back(); }
   [[nodiscard]] const JointVector& effort() const noexcept { return effort_; }
-  [[nodiscard]] const std::vector<Model>& models() const noexcept { return models_; }
+  [[nodiscard]] const TorqueModels<Model>& models() const noexcept { return models_; }
   [[nodiscard]] const JointVector& most() const noexcept { return most_; }
 
   /// Throws std::invalid_argument unless the motion is at acceleration level with bounds on all accelerations.
@@ -94,8 +89,8 @@ class TorqueBounds {
       for (Eigen::Index i = 0; i < q.size(); ++i) {
         const Scalar torque = std::abs(torques.of[k].h(i));
         if (torque <= most_(i)) continue;
-        validation::fail(validation::Argument(names_[static_cast<std::size_t>(i)]) + ": torque at rest", torque,
-                         "at most ", most_(i), ": the arm must be able to hold its posture");
+        validation::fail(names_[i] + ": torque at rest", torque, "at most ", most_(i),
+                         ": the arm must be able to hold its posture");
       }
     }
   }
@@ -186,14 +181,10 @@ class TorqueBounds {
   /// 50 times as long as with the full deceleration.
   static constexpr Scalar kSlowest = Scalar(0.02);
 
-  [[nodiscard]] static std::vector<Model> models_of(const Model& model, const std::optional<Model>& lighter) {
-    return lighter ? std::vector<Model>{*lighter, model} : std::vector<Model>{model};
-  }
-
-  std::vector<Model> models_;  ///< One model, or a lighter and a heavier model.
+  TorqueModels<Model> models_;
   JointVector effort_;
   JointVector most_;  ///< Bounds on the torques of inverse dynamics.
-  std::vector<std::string> names_;
+  DriveNames<N> names_;
   TorqueCertificate<N, Scalar, Joints> certificate_;
 };
 

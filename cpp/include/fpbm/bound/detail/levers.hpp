@@ -1,9 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <string>
-#include <vector>
+#include <string_view>
 
 #include "fpbm/core/detail/validation.hpp"
 #include "fpbm/linalg/detail/three.hpp"
@@ -13,20 +13,21 @@ namespace fpbm {
 
 /// Bounds on the displacement of points of links by each joint, valid in every posture (docs/clearance_proof.md, "Near
 /// pairs").
-template <typename Scalar = double>
+template <typename Scalar = double, int Joints = Eigen::Dynamic>
 class Levers {
  public:
-  using JointVector = Vector<Eigen::Dynamic, Scalar>;
+  using JointVector = Vector<Joints, Scalar>;
 
   /// source: a checked Tree or Chain.
   template <typename Source>
   explicit Levers(const Source& source) {
-    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(source.joints.size()); ++i) {
-      const auto& joint = joint_of(source, i);
+    for (; count_ < static_cast<Eigen::Index>(source.joints.size()); ++count_) {
+      const auto& joint = joint_of(source, count_);
       const bool turns = joint.type != JointType::kPrismatic;
       using std::abs;
       const Scalar range = turns ? Scalar(0) : std::max(abs(joint.bounds.lower), abs(joint.bounds.upper));
-      joints_.push_back({joint.placement.p, normalized(joint.axis), range, turns, parent_of(source, i)});
+      joints_[static_cast<std::size_t>(count_)] = {joint.placement.p, normalized(joint.axis), range, turns,
+                                                   parent_of(source, count_)};
     }
   }
 
@@ -37,7 +38,7 @@ class Levers {
   /// the component of the first link along the axis. A lever is infinite if a prismatic joint without bounds is in this
   /// chain, and 0 if joint k does not move the link.
   [[nodiscard]] JointVector operator()(int link, const Vector<3, Scalar>& point) const {
-    JointVector lever = filled<JointVector>(static_cast<Eigen::Index>(joints_.size()));
+    JointVector lever = filled<JointVector>(count_);
     Scalar beyond = Scalar(0);  // Length of the chain from the origin of the next joint to the point [m].
     Vector<3, Scalar> step = point;
     while (link > 0) {
@@ -59,7 +60,8 @@ class Levers {
     int parent;
   };
 
-  std::vector<Joint> joints_;
+  std::array<Joint, static_cast<std::size_t>(kCapacity<Joints>)> joints_;
+  Eigen::Index count_ = 0;
 };
 
 /// Throws the error of a capsule with an infinite lever: a prismatic joint without bounds is between a revolute joint
@@ -69,7 +71,7 @@ template <typename Robot_, typename Source>
 [[noreturn]] void reject_unbounded(const Robot_& robot, const Source& source, const validation::Argument& argument,
                                    int link) {
   bool turns = false;
-  std::string rail;
+  std::string_view rail;
   each_joint(robot.moved_by(link), [&](Eigen::Index k) {
     const auto& joint = joint_of(source, k);
     turns = turns || robot.turns(k);

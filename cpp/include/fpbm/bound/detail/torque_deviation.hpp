@@ -31,11 +31,14 @@ class TorqueDeviation {
   template <typename Source>
   TorqueDeviation(const Source& source, const Model& model)
       : drives_(model.robot().drives()),
-        levers_(source),
         viscous_(filled<JointVector>(model.dof())),
         rotors_(viscous_),
         sign_(signs(model)) {
     const auto& robot = model.robot();
+    const Levers<Scalar, Joints> of_point(source);
+    const auto levers_of = [&](int link) {  // Levers of the centre of mass [m].
+      return of_point(link, times(transposed(robot.in_joint(link, {}).R), model.link(link).centre));
+    };
     for (int link = 1; link <= robot.joints(); ++link) {
       parents_[static_cast<std::size_t>(link - 1)] = robot.parent(link) - 1;
       tree_ = tree_ || robot.parent(link) != link - 1;
@@ -46,7 +49,7 @@ class TorqueDeviation {
         viscous_(k) += ratio(k) * ratio(k) * joint_of(source, link - 1).drive.viscous;
         rotors_(k) += ratio(k) * ratio(k) * joint_of(source, link - 1).drive.rotor_inertia;
       }
-      if (model.link(link).mass > Scalar(0) && !is_finite(levers_of(model, link))) {
+      if (model.link(link).mass > Scalar(0) && !is_finite(levers_of(link))) {
         reject_unbounded(robot, source, "links", link);
       }
     }
@@ -57,7 +60,7 @@ class TorqueDeviation {
       if (!(body.mass > Scalar(0))) continue;
       const Scalar moments = body.inertia.coeff(0, 0) + body.inertia.coeff(1, 1) + body.inertia.coeff(2, 2);
       const Scalar gyration = std::sqrt(moments / (Scalar(2) * body.mass));
-      const AllJoints levers = levers_of(model, link);
+      const AllJoints levers = levers_of(link);
       each_joint(robot.moved_by(link), [&](Eigen::Index i) noexcept {
         const Scalar lever = robot.turns(i) ? levers(i) + gyration : Scalar(1);
         squares(i) += body.mass * lever * lever;
@@ -168,12 +171,6 @@ class TorqueDeviation {
     return result;
   }
 
-  /// Levers of the centre of mass of a link, of all joints [m].
-  [[nodiscard]] AllJoints levers_of(const Model& model, int link) const noexcept {
-    const auto R = transposed(model.robot().in_joint(link, {}).R);
-    return levers_(link, times(R, model.link(link).centre));
-  }
-
   /// Signs of the ratios of the joints to their drives.
   [[nodiscard]] static AllJoints signs(const Model& model) noexcept {
     const auto rates = model.robot().drives().rates(filled<JointVector>(model.dof(), Scalar(1)));
@@ -181,7 +178,6 @@ class TorqueDeviation {
   }
 
   Drives<N, Joints, Scalar> drives_;
-  Levers<Scalar> levers_;
   std::array<int, static_cast<std::size_t>(kCapacity<Joints>)> parents_{};  ///< Of each joint, −1 on the base.
   bool tree_ = false;                                                       ///< Whether the robot has branches.
   JointVector viscous_;                                                     ///< [Nm s/rad]

@@ -41,6 +41,8 @@ class Argument {
     return argument;
   }
 
+  friend void append_text(std::string& message, const Argument& argument) { message += argument.text(); }
+
   friend Argument element(Argument argument, Eigen::Index i, Eigen::Index j);
 
   [[nodiscard]] std::string text() const { return joined(count_); }

@@ -47,6 +47,8 @@ void advance_alone(const Limits<Level::kAcceleration, N, Scalar>& limits, Eigen:
     qd(i) += h * u;
     part.speed(i) = std::max(part.speed(i), std::abs(qd(i)));
     part.last(i) = u;
+    part.ticks_alone += Scalar(1);
+    if (u == Scalar(0) && qd(i) == Scalar(0)) break;  // A slow stop of the other joints may take 50 times as long.
   }
 }
 
@@ -68,6 +70,7 @@ void advance(StopPlan<Level::kAcceleration, N, Scalar>& plan, const Limits<Level
   const auto brake = plan.profile_.removed_fractions(std::max(plan.k_, ramp_end), end - Scalar(1));
   const Scalar removed = plan.profile_.removed_fraction(end - Scalar(1));
   part.alone = plan.stops_alone_;
+  part.ticks_alone = Scalar(0);
   const bool pauses = ramps && brakes;  // At the end of the ramp.
   part.pauses = pauses && part.alone == 0;
   part.corner_count = pauses ? (part.pauses ? 3 : 4) : 2;

@@ -19,7 +19,8 @@ struct StopPart {
   std::array<Vector<N, Scalar>, 4> corners;
   std::size_t corner_count = 0;
   bool pauses = false;
-  JointBits alone = 0;  ///< Bits of joints that follow their own shortest stops.
+  JointBits alone = 0;             ///< Bits of joints that follow their own shortest stops.
+  Scalar ticks_alone = Scalar(0);  ///< Computed ticks of these joints.
   /// If all joints move along their velocities after the ramp: the time in which these velocities would cover the
   /// displacement of the part [s]. Otherwise 0.
   Scalar line = Scalar(0);

@@ -8,33 +8,9 @@
 #include "fpbm/core/detail/mask.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/linalg/detail/entrywise.hpp"
+#include "fpbm/linalg/detail/pair_storage.hpp"
 
 namespace fpbm {
-
-/// Two Scalars with entrywise arithmetic.
-template <typename Scalar>
-struct PlainPair {
-  Scalar a;
-  Scalar b;
-
-  [[nodiscard]] const Scalar& operator[](int i) const noexcept { return i == 0 ? a : b; }
-  friend PlainPair operator+(const PlainPair& x, const PlainPair& y) noexcept { return {x.a + y.a, x.b + y.b}; }
-  friend PlainPair operator-(const PlainPair& x, const PlainPair& y) noexcept { return {x.a - y.a, x.b - y.b}; }
-  friend PlainPair operator*(const PlainPair& x, const PlainPair& y) noexcept { return {x.a * y.a, x.b * y.b}; }
-  friend PlainPair operator/(const PlainPair& x, const PlainPair& y) noexcept { return {x.a / y.a, x.b / y.b}; }
-};
-
-/// Storage of a Pair: one SIMD vector if the compiler has vector types, else a PlainPair.
-template <typename Scalar, typename = void>
-struct PairStorage {
-  using type = PlainPair<Scalar>;
-};
-#if defined(__GNUC__)  // Also defined by compilers compatible with GNU C++.
-template <typename Scalar>
-struct PairStorage<Scalar, std::enable_if_t<std::is_arithmetic_v<Scalar> && sizeof(Scalar) <= sizeof(double)>> {
-  using type [[gnu::vector_size(2 * sizeof(Scalar))]] = Scalar;
-};
-#endif
 
 /// Two Scalars with entrywise arithmetic. With Value = Pair<Scalar>, a small algorithm for a Value solves two problems
 /// in parallel. A comparison is true if it is true for both entries.
@@ -69,10 +45,18 @@ class Pair {
   [[nodiscard]] Scalar first() const noexcept { return both_[0]; }
   [[nodiscard]] Scalar second() const noexcept { return both_[1]; }
 
-  friend Pair operator+(const Pair& x, const Pair& y) noexcept { return Pair(x.both_ + y.both_, kAll); }
-  friend Pair operator-(const Pair& x, const Pair& y) noexcept { return Pair(x.both_ - y.both_, kAll); }
-  friend Pair operator*(const Pair& x, const Pair& y) noexcept { return Pair(x.both_ * y.both_, kAll); }
-  friend Pair operator/(const Pair& x, const Pair& y) noexcept { return Pair(x.both_ / y.both_, kAll); }
+  [[gnu::always_inline]] friend Pair operator+(const Pair& x, const Pair& y) noexcept {
+    return Pair(x.both_ + y.both_, kAll);
+  }
+  [[gnu::always_inline]] friend Pair operator-(const Pair& x, const Pair& y) noexcept {
+    return Pair(x.both_ - y.both_, kAll);
+  }
+  [[gnu::always_inline]] friend Pair operator*(const Pair& x, const Pair& y) noexcept {
+    return Pair(x.both_ * y.both_, kAll);
+  }
+  [[gnu::always_inline]] friend Pair operator/(const Pair& x, const Pair& y) noexcept {
+    return Pair(x.both_ / y.both_, kAll);
+  }
   Pair& operator+=(const Pair& y) noexcept { return *this = *this + y; }
   Pair& operator-=(const Pair& y) noexcept { return *this = *this - y; }
   Pair& operator*=(const Pair& y) noexcept { return *this = *this * y; }

@@ -40,6 +40,11 @@ class AlongTree {
 
   /// The vectors of the links of joints i and i + 1: the vectors of their carriers, plus `own`.
   [[nodiscard, gnu::always_inline]] Two outward(Eigen::Index i, const Two& own) noexcept {
+    if (is_between(i)) {
+      const One a = sum(last_, first(own));
+      last_ = sum(a, second(own));
+      return both(a, last_);
+    }
     const One a = sum(carrier(i), first(own));
     keep(i, a);
     const One b = sum(carrier(i + 1), second(own));
@@ -48,6 +53,11 @@ class AlongTree {
   }
   /// The vectors of the carriers of joints i and i + 1. The vectors of the links of the joints are `own`.
   [[nodiscard, gnu::always_inline]] Two of_carriers(Eigen::Index i, const Two& own) noexcept {
+    if (is_between(i)) {
+      const One a = last_;
+      last_ = second(own);
+      return both(a, first(own));
+    }
     const One a = carrier(i);
     keep(i, first(own));
     const One b = carrier(i + 1);
@@ -56,6 +66,13 @@ class AlongTree {
   }
   /// In a pass toward the base: `own`, plus the sums over all links that the links of joints i and i + 1 carry.
   [[nodiscard, gnu::always_inline]] Two inward(Eigen::Index i, const Two& own) noexcept {
+    if (is_between(i)) {
+      Two result;
+      for (std::size_t k = 0; k < Count; ++k) {
+        result[k] = {onto(last_[k].x, own[k].x), onto(last_[k].y, own[k].y), onto(last_[k].z, own[k].z)};
+      }
+      return result;
+    }
     const One b = sum(carried(i + 1), second(own));
     give(i + 1, b);
     const One a = sum(carried(i), first(own));
@@ -91,6 +108,17 @@ class AlongTree {
     });
   }
 
+  /// Sums over two links and over all links beyond, whose sum is `last`: fewer operations than with separate entries.
+  [[nodiscard, gnu::always_inline]] static Pair<Scalar> onto(Scalar& last, const Pair<Scalar>& own) noexcept {
+    const Pair<Scalar> sums = own + Pair<Scalar>(own.second(), Scalar(0)) + Pair<Scalar>(last);
+    last = sums.first();
+    return sums;
+  }
+
+  /// Whether joints i and i + 1 are between two branches, as in a chain.
+  [[nodiscard]] bool is_between(Eigen::Index i) const noexcept {
+    return !kTree || ((branches_.starts | branches_.forks) >> i & 3U) == 0;
+  }
   [[nodiscard]] bool starts(Eigen::Index j) const noexcept { return kTree && (branches_.starts >> j & 1U) != 0; }
   [[nodiscard]] bool forks(Eigen::Index j) const noexcept { return kTree && (branches_.forks >> j & 1U) != 0; }
   [[nodiscard]] One& stored(Eigen::Index link) noexcept { return stored_[static_cast<std::size_t>(link)]; }
