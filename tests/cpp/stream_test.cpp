@@ -218,6 +218,31 @@ TEST(Stream, follows_overlapping_chunks) {
   EXPECT_LE(ripple, 0.01 * 0.2 * kPi * kPi);
 }
 
+/// A chunk at 10 Hz with turning points between its points: the reference stays on the smooth motion of the chunk.
+TEST(Stream, follows_turning_points_between_points) {
+  constexpr double kRate = 1.5;
+  for (const double phase : {0.0, 0.1, 0.25, 0.444, 0.5}) {
+    const auto at = [&](double t) { return Vector<7>::Constant(0.2 * std::cos(kRate * (t + 0.1 * phase))); };
+    auto limits = JointLimits<7>::none(7);
+    limits.velocity.setConstant(2.0);
+    limits.acceleration.setConstant(10.0);
+    limits.jerk.setConstant(5000.0);
+    StreamOptions<> options;
+    options.start = 0.0;
+    JointStream<7> stream(at(0.0), limits, options);
+    std::vector<TimedPoint<JointSpace<7>>> points;
+    for (int k = 0; k < 60; ++k) points.push_back({0.1 * k, at(0.1 * k), {}, {}});
+    ASSERT_TRUE(stream.push_chunk(points.data(), 60, 0.0));
+    double ripple = 0.0;
+    for (int tick = 0; tick < 5500; ++tick) {
+      stream.advance();
+      const double own = -kRate * kRate * at((tick + 1) * kTick)(0);
+      if (tick > 500) ripple = std::max(ripple, std::abs(stream.reference().xdd(0) - own));
+    }
+    EXPECT_LE(ripple, 0.02 * 0.2 * kRate * kRate) << phase;
+  }
+}
+
 /// Points one by one, 50 a second and up to 15 ms late: the reference passes the points after the delay.
 TEST(Stream, passes_points_after_the_delay) {
   Random random(53);

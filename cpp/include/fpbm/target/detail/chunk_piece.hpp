@@ -8,6 +8,7 @@
 #include "fpbm/geometry/detail/chart_rates.hpp"
 #include "fpbm/geometry/rotation.hpp"
 #include "fpbm/path/reference.hpp"
+#include "fpbm/target/detail/target_bounds.hpp"
 
 namespace fpbm {
 
@@ -76,6 +77,19 @@ struct ChunkPiece {
     const Scalar vertex = std::min(std::max(Scalar(-0.2) * c.c4 / c.c5, Scalar(0)), last);
     const Scalar largest = std::max(at(Scalar(0)), at(last));
     return (std::isfinite(vertex) ? std::max(largest, at(vertex)) : largest) / (h * h * h);
+  }
+
+  /// Includes the Bézier points of coordinate i between the ends, whose range contains the polynomial.
+  void include_extremes(Eigen::Index i, Range<Scalar>& range) const noexcept {
+    const Scalar x0 = coordinate(start.x, i);
+    const Scalar x1 = x0 + d(i);
+    const Scalar first = h / Scalar(5) * start.xd(i);
+    const Scalar last = h / Scalar(5) * end.xd(i);
+    const Scalar square = h * h / Scalar(20);
+    range.include(x0 + first);
+    range.include(x0 + Scalar(2) * first + square * start.xdd(i));
+    range.include(x1 - last);
+    range.include(x1 - Scalar(2) * last + square * end.xdd(i));
   }
 
   /// Accelerations at the ends of the polynomial of degree 3 with the positions and velocities of both points.

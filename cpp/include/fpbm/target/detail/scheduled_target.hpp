@@ -158,14 +158,9 @@ class ScheduledTarget {
     for (std::size_t k = active_piece; k < size_; ++k) {
       const Piece& piece = pieces_[k];
       if (piece.from > time) range.include(coordinate(piece.start.x, i));
-      // The polynomial has its extremum between points where the velocities have different signs. Its distance from the
-      // points is at most 4/27 of the time between the points, times a velocity, without accelerations. 0.2 includes
-      // accelerations.
-      if (!(piece.h > Scalar(0)) || !(piece.start.xd(i) * piece.end.xd(i) < Scalar(0))) continue;
-      const Scalar beyond = Scalar(0.2) * piece.h * std::max(std::abs(piece.end.xd(i)), std::abs(piece.start.xd(i)));
-      const Scalar x0 = coordinate(piece.start.x, i);
-      const Scalar x1 = x0 + piece.d(i);
-      range.include(piece.start.xd(i) > Scalar(0) ? std::max(x0, x1) + beyond : std::min(x0, x1) - beyond);
+      // The part of the present piece that has passed must not extend the range.
+      const bool turns = piece.start.xd(i) * piece.end.xd(i) < Scalar(0);
+      if (piece.h > Scalar(0) && (k > active_piece || turns)) piece.include_extremes(i, range);
     }
     return range;
   }
