@@ -25,13 +25,24 @@ void publish_tips(const Report& report, const Exchange& exchange,
   }
 }
 
+/// The nearest pair of shapes in the commanded posture.
+[[nodiscard]] std::optional<NearestPair> nearest_pair(const Report& report, const Exchange& exchange) {
+  if (!exchange.obstacles) return std::nullopt;
+  const Clearance& clearance = *exchange.obstacles->clearance();
+  const auto [pair, distance] = clearance.nearest_pair(report.q);
+  if (pair == clearance.pairs().size()) return std::nullopt;
+  const auto [first, second] = clearance.names(clearance.pairs()[pair]);
+  return NearestPair{first, second, distance, clearance.margin()};
+}
+
 void publish_diagnostics(const std::string& node, Exchange& exchange,
                          rclcpp::Publisher<diagnostic_msgs::msg::DiagnosticArray>& publisher) {
   const Report report = exchange.report.get();
   if (!report.active) return;
   diagnostic_msgs::msg::DiagnosticArray message;
   message.header.stamp = report.time;
-  message.status.push_back(diagnostic_of(report, exchange.diagnosed, exchange.joints, exchange.names));
+  message.status.push_back(
+      diagnostic_of(report, exchange.diagnosed, exchange.joints, exchange.names, nearest_pair(report, exchange)));
   message.status.back().name = node + ": motion";
   message.status.back().hardware_id = exchange.arm;
   exchange.diagnosed = report;
@@ -65,8 +76,9 @@ void log_events(const Report& report, Exchange& exchange, const rclcpp::Logger& 
 }  // namespace
 
 TargetTopics::TargetTopics(rclcpp_lifecycle::LifecycleNode& node, const target_controller::Params& params,
-                           const std::vector<TaskSettings>& tasks)
+                           const std::vector<TaskSettings>& tasks, std::optional<Obstacles> obstacles)
     : exchange_(std::make_shared<Exchange>(tasks.size())) {
+  exchange_->obstacles = std::move(obstacles);
   exchange_->arm = params.arm;
   exchange_->joints = params.joints;
   std::vector<std::shared_ptr<TipPublisher>> tips;
@@ -90,6 +102,15 @@ TargetTopics::TargetTopics(rclcpp_lifecycle::LifecycleNode& node, const target_c
         RCLCPP_WARN_THROTTLE(logger, *clock, 1000, "speed dropped: it is %s, and must be in (0, 1]",
                              std::to_string(message.data).c_str());
       });
+  if (exchange_->obstacles) {
+    // Reliable, because a lost difference would lose an obstacle.
+    obstacles_ = node.create_subscription<moveit_msgs::msg::PlanningScene>(
+        "~/obstacles", rclcpp::QoS(100),
+        [exchange = exchange_, logger = node.get_logger()](const moveit_msgs::msg::PlanningScene& scene) {
+          for (const std::string& text : exchange->obstacles->apply(scene)) RCLCPP_WARN(logger, "%s", text.c_str());
+          exchange->clearance.set({exchange->obstacles->clearance(), true});
+        });
+  }
   using Diagnostics = rclcpp::Publisher<diagnostic_msgs::msg::DiagnosticArray>;
   const std::shared_ptr<Diagnostics> diagnostics =
       node.create_publisher<diagnostic_msgs::msg::DiagnosticArray>("/diagnostics", rclcpp::SystemDefaultsQoS());

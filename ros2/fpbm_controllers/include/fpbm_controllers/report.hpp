@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <diagnostic_msgs/msg/diagnostic_status.hpp>
 #include <fpbm/core/status.hpp>
+#include <fpbm/core/types.hpp>
 #include <fpbm/geometry/rotation.hpp>
+#include <optional>
 #include <rclcpp/time.hpp>
 #include <string>
 #include <vector>
@@ -41,7 +43,28 @@ struct Report {
   std::size_t limited_joint = 0;
   rclcpp::Time time = rclcpp::Time();
   std::array<TaskReport, kTasks> tasks;
+  fpbm::Vector<Eigen::Dynamic> q;  ///< Commanded posture. No memory is allocated for robots of fpbm.
 };
+
+/// The nearest pair of shapes of a clearance.
+struct NearestPair {
+  std::string first;
+  std::string second;
+  double distance;  ///< [m]
+  double margin;    ///< [m]
+};
+
+/// Whether a pair is closer than the margin by more than round-off.
+[[nodiscard]] inline bool is_too_close(const NearestPair& pair) {
+  constexpr double kRoundOff = 1e-6;
+  return pair.distance < pair.margin - kRoundOff;
+}
+
+/// Description of a pair that is closer than the margin.
+[[nodiscard]] inline std::string too_close_message(const NearestPair& pair) {
+  return pair.first + " and " + pair.second + " are " + std::to_string(pair.distance) +
+         " m apart, closer than clearance.margin: the arm only moves away. Remove the obstacle.";
+}
 
 /// Description of a fault, with advice.
 [[nodiscard]] inline std::string message_of(const Report& report, const std::vector<std::string>& joints) {
@@ -93,10 +116,12 @@ struct Report {
   return name.empty() ? "" : " of task '" + name + "'";
 }
 
-/// A report as a message. before: the report of the previous message. tasks: names of the tasks.
+/// A report as a message. before: the report of the previous message. tasks: names of the tasks. nearest: None without
+/// a clearance.
 [[nodiscard]] inline diagnostic_msgs::msg::DiagnosticStatus diagnostic_of(const Report& report, const Report& before,
                                                                           const std::vector<std::string>& joints,
-                                                                          const std::vector<std::string>& tasks) {
+                                                                          const std::vector<std::string>& tasks,
+                                                                          const std::optional<NearestPair>& nearest) {
   using Message = diagnostic_msgs::msg::DiagnosticStatus;
   Message message;
   if (report.fault != Fault::kNone) {
@@ -119,6 +144,10 @@ struct Report {
       message.level = Message::WARN;
       message.message =
           "targets" + of_task(tasks[k]) + " are rejected: the last stamp is " + rejected_message(report.tasks[k]);
+    }
+    if (message.level != Message::ERROR && nearest && is_too_close(*nearest)) {
+      message.level = Message::WARN;
+      message.message = too_close_message(*nearest);
     }
   }
   const auto add = [&message](const std::string& key, const std::string& value) {
@@ -144,6 +173,10 @@ struct Report {
   add("calls that came too soon", std::to_string(report.early));
   add("speed", std::to_string(report.speed));
   add("ticks with a limited torque", std::to_string(report.limited));
+  if (nearest) {
+    add("nearest pair", nearest->first + " and " + nearest->second);
+    add("distance of the nearest pair [m]", std::to_string(nearest->distance));
+  }
   return message;
 }
 
