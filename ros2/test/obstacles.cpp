@@ -110,6 +110,9 @@ void operations() {
   CollisionObject many = stand_in::sphere("thing", 0.01, kElsewhere);
   many.primitives.resize(17, many.primitives[0]);
   dropped("17 shapes", many, "all obstacles would have 17 shapes: must be at most clearance.obstacles = 16");
+  (void)logged("");
+  robot.see(scene({stand_in::sphere("pedestal", 0.1, Vector(0.0, 0.0, 0.2))}));
+  check(logged("obstacle 'pedestal' is closer to link 'link_of_panda_joint1'"), "a pedestal: not checked, logged", 1);
   check(!has("thing"), "dropped objects are not obstacles", 1);
   check(robot.allocated == 0, "operations: allocations in update()", static_cast<double>(robot.allocated));
 }
@@ -141,7 +144,8 @@ void too_close() {
   robot.deactivate();
   (void)logged("");
   check(!robot.activate(), "too close: not activated", 1);
-  check(stand_in::log.find("ball") != std::string::npos && logged("margin"), "too close: the pair is named", 1);
+  check(stand_in::log.find("ball") != std::string::npos && logged("add the pair to clearance.allowed"),
+        "too close: the pair is named", 1);
   robot.see(scene({stand_in::operation(CollisionObject::REMOVE, "ball")}));
   check(robot.activate(), "too close: activated after the obstacle was removed", 1);
 }

@@ -103,19 +103,25 @@ std::vector<std::string> Obstacles::apply(const moveit_msgs::msg::PlanningScene&
     objects_.clear();
     shapes_.clear();
   }
-  std::vector<std::string> dropped;
+  std::vector<std::string> warnings;
   for (const Object& object : scene.world.collision_objects) {
     try {
       apply(object);
     } catch (const std::invalid_argument& error) {
-      dropped.push_back("obstacle '" + object.id + "' dropped: " + error.what());
+      warnings.push_back("obstacle '" + object.id + "' dropped: " + error.what());
     }
   }
   std::vector<Obstacle> all;
   for (const auto& [id, shapes] : shapes_) all.insert(all.end(), shapes.begin(), shapes.end());
   clearance_ =
       std::make_shared<Clearance>(settings_.tree, settings_.capsules, all, settings_.margin, settings_.allowed);
-  return dropped;
+  for (const fpbm::ShapePair& pair : clearance_->excluded_pairs()) {
+    if (!pair.world) continue;
+    const auto [link, obstacle] = clearance_->names(pair);
+    warnings.push_back("obstacle '" + obstacle + "' is closer to link '" + link +
+                       "' than clearance.margin in all of 256 postures: this pair is not checked");
+  }
+  return warnings;
 }
 
 void Obstacles::apply(const Object& object) {

@@ -1,6 +1,8 @@
 #include "fpbm_controllers/target_topics.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <utility>
 
 namespace fpbm_controllers {
 
@@ -25,24 +27,15 @@ void publish_tips(const Report& report, const Exchange& exchange,
   }
 }
 
-/// The nearest pair of shapes in the commanded posture.
-[[nodiscard]] std::optional<NearestPair> nearest_pair(const Report& report, const Exchange& exchange) {
-  if (!exchange.obstacles) return std::nullopt;
-  const Clearance& clearance = *exchange.obstacles->clearance();
-  const auto [pair, distance] = clearance.nearest_pair(report.q);
-  if (pair == clearance.pairs().size()) return std::nullopt;
-  const auto [first, second] = clearance.names(clearance.pairs()[pair]);
-  return NearestPair{first, second, distance, clearance.margin()};
-}
-
 void publish_diagnostics(const std::string& node, Exchange& exchange,
                          rclcpp::Publisher<diagnostic_msgs::msg::DiagnosticArray>& publisher) {
   const Report report = exchange.report.get();
   if (!report.active) return;
+  std::optional<NearestPair> nearest;
+  if (exchange.obstacles) nearest = nearest_pair(*exchange.obstacles->clearance(), report.q);
   diagnostic_msgs::msg::DiagnosticArray message;
   message.header.stamp = report.time;
-  message.status.push_back(
-      diagnostic_of(report, exchange.diagnosed, exchange.joints, exchange.names, nearest_pair(report, exchange)));
+  message.status.push_back(diagnostic_of(report, exchange.diagnosed, exchange.joints, exchange.names, nearest));
   message.status.back().name = node + ": motion";
   message.status.back().hardware_id = exchange.arm;
   exchange.diagnosed = report;
@@ -107,8 +100,13 @@ TargetTopics::TargetTopics(rclcpp_lifecycle::LifecycleNode& node, const target_c
     obstacles_ = node.create_subscription<moveit_msgs::msg::PlanningScene>(
         "~/obstacles", rclcpp::QoS(100),
         [exchange = exchange_, logger = node.get_logger()](const moveit_msgs::msg::PlanningScene& scene) {
-          for (const std::string& text : exchange->obstacles->apply(scene)) RCLCPP_WARN(logger, "%s", text.c_str());
-          exchange->clearance.set({exchange->obstacles->clearance(), true});
+          std::vector<std::string> warnings = exchange->obstacles->apply(scene);
+          for (const std::string& text : warnings) {
+            const auto& before = exchange->scene_warnings;
+            if (std::count(before.begin(), before.end(), text) == 0) RCLCPP_WARN(logger, "%s", text.c_str());
+          }
+          exchange->scene_warnings = std::move(warnings);
+          exchange->clearance.set(ClearanceOffer{exchange->obstacles->clearance(), true});
         });
   }
   using Diagnostics = rclcpp::Publisher<diagnostic_msgs::msg::DiagnosticArray>;

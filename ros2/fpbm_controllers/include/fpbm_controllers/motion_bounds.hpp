@@ -1,13 +1,13 @@
 #pragma once
 
-#include <fpbm/bound/clearance.hpp>
 #include <fpbm/bound/task_bounds.hpp>
 #include <fpbm/bound/torque_bounds.hpp>
+#include <fpbm_controllers/nearest_pair.hpp>
 #include <memory>
+#include <stdexcept>
 
 namespace fpbm_controllers {
 
-using Clearance = fpbm::Clearance<Eigen::Dynamic>;
 using TaskBounds = fpbm::TaskBounds<Eigen::Dynamic>;
 using TorqueBounds = fpbm::TorqueBounds<Eigen::Dynamic>;
 
@@ -89,12 +89,13 @@ class SharedBounds {
   /// Throws std::invalid_argument, which names the shapes, the link or the joint, if the posture q violates a bound.
   void require(const Joints& q) const {
     if (admit(q)) return;
-    const auto each = [&q](const auto& bound) {
-      if (bound != nullptr && !bound->empty()) bound->require(q);
-    };
-    each(clearance);
-    each(task_bounds);
-    each(torque_bounds);
+    const auto pair = clearance ? nearest_pair(*clearance, q) : std::nullopt;
+    if (pair && pair->is_too_close()) {
+      throw std::invalid_argument(pair->too_close() +
+                                  "move the arm, remove the obstacle, or add the pair to clearance.allowed");
+    }
+    if (task_bounds) task_bounds->require(q);
+    if (torque_bounds) torque_bounds->require(q);
   }
 
  private:

@@ -29,8 +29,8 @@ class Obstacles {
   /// Throws std::invalid_argument if the clearance rejects a capsule.
   explicit Obstacles(ClearanceSettings settings);
 
-  /// Applies a planning scene, as MoveIt does: a difference, or a whole scene. Returns the reason for each object that
-  /// is dropped.
+  /// Applies a planning scene, as MoveIt does: a difference, or a whole scene. Returns a warning for each object that
+  /// is dropped, and for each pair that is not checked.
   [[nodiscard]] std::vector<std::string> apply(const moveit_msgs::msg::PlanningScene& scene);
 
   /// The clearance of the robot among the present obstacles.

@@ -7,6 +7,7 @@
 #include <fpbm/core/status.hpp>
 #include <fpbm/core/types.hpp>
 #include <fpbm/geometry/rotation.hpp>
+#include <fpbm_controllers/nearest_pair.hpp>
 #include <optional>
 #include <rclcpp/time.hpp>
 #include <string>
@@ -45,26 +46,6 @@ struct Report {
   std::array<TaskReport, kTasks> tasks;
   fpbm::Vector<Eigen::Dynamic> q;  ///< Commanded posture. No memory is allocated for robots of fpbm.
 };
-
-/// The nearest pair of shapes of a clearance.
-struct NearestPair {
-  std::string first;
-  std::string second;
-  double distance;  ///< [m]
-  double margin;    ///< [m]
-};
-
-/// Whether a pair is closer than the margin by more than round-off.
-[[nodiscard]] inline bool is_too_close(const NearestPair& pair) {
-  constexpr double kRoundOff = 1e-6;
-  return pair.distance < pair.margin - kRoundOff;
-}
-
-/// Description of a pair that is closer than the margin.
-[[nodiscard]] inline std::string too_close_message(const NearestPair& pair) {
-  return pair.first + " and " + pair.second + " are " + std::to_string(pair.distance) +
-         " m apart, closer than clearance.margin: the arm only moves away. Remove the obstacle.";
-}
 
 /// Description of a fault, with advice.
 [[nodiscard]] inline std::string message_of(const Report& report, const std::vector<std::string>& joints) {
@@ -145,9 +126,9 @@ struct NearestPair {
       message.message =
           "targets" + of_task(tasks[k]) + " are rejected: the last stamp is " + rejected_message(report.tasks[k]);
     }
-    if (message.level != Message::ERROR && nearest && is_too_close(*nearest)) {
+    if (message.level != Message::ERROR && nearest && nearest->is_too_close()) {
       message.level = Message::WARN;
-      message.message = too_close_message(*nearest);
+      message.message = nearest->too_close() + "the arm only moves away. Remove the obstacle.";
     }
   }
   const auto add = [&message](const std::string& key, const std::string& value) {
@@ -174,7 +155,7 @@ struct NearestPair {
   add("speed", std::to_string(report.speed));
   add("ticks with a limited torque", std::to_string(report.limited));
   if (nearest) {
-    add("nearest pair", nearest->first + " and " + nearest->second);
+    add("nearest pair", nearest->names);
     add("distance of the nearest pair [m]", std::to_string(nearest->distance));
   }
   return message;

@@ -49,10 +49,11 @@ struct Exchange {
   // Used only by the callbacks.
   std::string arm;
   std::vector<std::string> joints;
-  std::vector<std::string> names;      ///< Names of the tasks.
-  std::optional<Obstacles> obstacles;  ///< None without a clearance.
-  Report logged;                       ///< The last report whose events were logged.
-  Report diagnosed;                    ///< The last published report.
+  std::vector<std::string> names;           ///< Names of the tasks.
+  std::optional<Obstacles> obstacles;       ///< None without a clearance.
+  std::vector<std::string> scene_warnings;  ///< Warnings about the last scene, which are not repeated.
+  Report logged;                            ///< The last report whose events were logged.
+  Report diagnosed;                         ///< The last published report.
 };
 
 /// The controller's topics: three for each task, the speed, the obstacles if there is a clearance, and the diagnostics.
