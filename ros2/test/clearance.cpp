@@ -146,6 +146,18 @@ void two_arms_meet() {
   }
   check(distance >= kMargin - kTolerance, "two arms: least distance [m]", distance);
   check(distance < kMargin + 0.01, "two arms: the arms reach the margin [m]", distance);
+  Transform<> beside = robot.tip("left");  // Beside the base of the right arm.
+  beside.p = {0.1, -0.25, 0.05};
+  auto message = pose_message(beside);
+  message.header.frame_id = "table";
+  robot.hear("~/left/target_pose", message);
+  distance = 1.0;
+  for (int i = 0; i < 4000; ++i) {
+    robot.tick();
+    distance = std::min(distance, judge.nearest_pair(Eigen::Map<const fpbm::Vector<14>>(robot.q.data())).second);
+  }
+  check(distance >= kMargin - kTolerance, "two arms, a hand at the other base: least distance [m]", distance);
+  check(distance < kMargin + 1e-3, "two arms, a hand at the other base: the hand reaches the margin [m]", distance);
   check(robot.allocated == 0, "two arms: allocations", static_cast<double>(robot.allocated));
 }
 
