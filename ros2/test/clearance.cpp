@@ -27,6 +27,8 @@ void self_collision() {
   check(value(status, "nearest pair").find("link_of_panda_joint") != std::string::npos,
         "self-collision: the nearest pair is in the diagnostics", 1);
   limits_hold(robot, "self-collision");
+  robot.deactivate();
+  check(robot.activate(), "self-collision: activated again at the margin", 1);
 }
 
 /// Capsules of the parameters, at links that are fixed to links of the arm.

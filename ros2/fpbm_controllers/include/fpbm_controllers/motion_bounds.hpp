@@ -84,8 +84,8 @@ class SharedBounds {
     task_bounds.reset();
     torque_bounds.reset();
   }
-  /// Whether the posture q keeps all bounds.
-  [[nodiscard]] bool admit(const Joints& q) const noexcept { return view().closeness(q, -kRoundOff) == 0.0; }
+  /// Whether the posture q keeps all bounds, so that a start at rest does not throw.
+  [[nodiscard]] bool admit(const Joints& q) const noexcept { return view().closeness(q, kRoundOff) == 0.0; }
   /// Throws std::invalid_argument, which names the shapes, the link or the joint, if the posture q violates a bound.
   void require(const Joints& q) const {
     if (admit(q)) return;
@@ -99,8 +99,9 @@ class SharedBounds {
   }
 
  private:
-  /// An arm that slides along a bound is beyond the bound by round-off [m, or a fraction of a torque].
-  static constexpr double kRoundOff = 1e-6;
+  /// Larger than the round-off error of a gap, and smaller than the gap of an arm that has slid along a bound: at least
+  /// 1e-6 m in the tests of obstacles [m, or a fraction of a torque].
+  static constexpr double kRoundOff = 1e-9;
 };
 
 }  // namespace fpbm_controllers

@@ -14,11 +14,7 @@ struct NearestPair {
   double distance;  ///< [m]
   double margin;    ///< [m]
 
-  /// Whether the pair is closer than the margin by more than round-off: an arm slides along a shape at the margin.
-  [[nodiscard]] bool is_too_close() const noexcept {
-    constexpr double kRoundOff = 1e-6;
-    return distance < margin - kRoundOff;
-  }
+  [[nodiscard]] bool is_too_close() const noexcept { return distance < margin; }
   [[nodiscard]] std::string too_close() const {
     return names + " are " + std::to_string(distance) +
            " m apart, closer than clearance.margin = " + std::to_string(margin) + ": ";
