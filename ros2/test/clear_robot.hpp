@@ -37,9 +37,8 @@ class Judge {
   explicit Judge(const std::vector<fpbm::Obstacle<>>& obstacles)
       : clearance_(fpbm::presets::panda(), fpbm::presets::capsules::panda(), obstacles, 0.0,
                    fpbm::presets::never_collide::panda()) {}
-  [[nodiscard]] double distance(const ClearRobot& robot) const {
-    return clearance_.nearest_pair(robot.posture()).second;
-  }
+  [[nodiscard]] double distance(const fpbm::Vector<7>& q) const { return clearance_.nearest_pair(q).second; }
+  [[nodiscard]] double distance(const ClearRobot& robot) const { return distance(robot.posture()); }
 
  private:
   fpbm::Clearance<7> clearance_;

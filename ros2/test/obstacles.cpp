@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -150,6 +151,33 @@ void too_close() {
   check(robot.activate(), "too close: activated after the obstacle was removed", 1);
 }
 
+/// A person holds the arm while it approaches a box: the braking motion keeps the margin.
+void fault_near_a_box() {
+  const Vector aside = ClearRobot().tip().p + Vector(0.0, 0.3, 0.0);
+  Transform<> place;
+  place.p = aside;
+  const Judge judge({fpbm::Obstacle<>("box", fpbm::Cuboid<>{place, Vector(0.15, 0.05, 0.3)})});
+  double least = 1.0;
+  double fastest = 0.0;
+  for (const int ticks : {200, 300, 400, 500, 600}) {
+    ClearRobot robot;
+    check(robot.load() && robot.activate(), "a fault near a box: activated", ticks);
+    robot.see(scene({stand_in::box("box", Vector(0.3, 0.1, 0.6), aside)}));
+    robot.target(Vector(0.0, 0.3, 0.0));
+    robot.tick(ticks);
+    fastest = std::max(fastest, robot.speed());
+    robot.held = true;
+    for (int i = 0; i < 1000; ++i) {
+      robot.tick();
+      least = std::min(least, judge.distance(fpbm::Vector<7>(robot.command.data())));
+    }
+    check(robot.speed() == 0.0, "a fault near a box: the command is at rest [rad/s]", robot.speed());
+  }
+  check(fastest > 0.3, "a fault near a box: speed [rad/s]", fastest);
+  check(least >= kMargin - kTolerance, "a fault near a box: least distance of the command [m]", least);
+  check(least < kMargin + 0.01, "a fault near a box: the arm was near [m]", least);
+}
+
 /// A lock ends in a posture that is too close to a new obstacle: the arm waits until the obstacle is away.
 void after_a_lock() {
   ClearRobot robot;
@@ -175,5 +203,6 @@ void obstacles() {
   kinds();
   operations();
   too_close();
+  fault_near_a_box();
   after_a_lock();
 }
