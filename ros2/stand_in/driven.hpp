@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <controller_interface/controller_interface.hpp>
 #include <counted_new.hpp>
@@ -146,6 +147,7 @@ class Driven {
   std::vector<joint_limits::SoftJointLimits> soft_limits;
   int enforced = 0;  ///< Number of ticks in which the manager changed a position.
   std::int64_t calls = 0;
+  double seconds_of_call = 0.0;  ///< Time of the last call of update() [s].
   long allocated = 0;
   double excess = -1e9;               ///< Excess over a bound on position or velocity [rad, rad/s].
   double acceleration_excess = -1.0;  ///< Relative to the bound.
@@ -202,7 +204,9 @@ class Driven {
     ++calls;
     const int refusals_before = refusals;
     const long before = allocations;
+    const auto begin = std::chrono::steady_clock::now();
     const auto result = controller_->update(rclcpp::Time(time_), rclcpp::Duration::from_seconds(seconds));
+    seconds_of_call = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     allocated += allocations - before;
     good(result == controller_interface::return_type::OK, "update");
     const bool refused = refusals != refusals_before;

@@ -142,9 +142,12 @@ void targets() {
 
 int main(int count, char** names) {
   const std::pair<const char*, void (*)()> tests[] = {
-      {"targets", targets},           {"locks", locks},     {"rates", rates},   {"activation", activation},
-      {"descriptions", descriptions}, {"efforts", efforts}, {"topics", topics}, {"parameters", parameters},
-      {"two_arms", two_arms},         {"grasp", grasp},     {"tasks", tasks},   {"wording", wording}};
+      {"targets", targets},         {"locks", locks},         {"rates", rates},
+      {"activation", activation},   {"clearance", clearance}, {"descriptions", descriptions},
+      {"efforts", efforts},         {"topics", topics},       {"obstacles", obstacles},
+      {"parameters", parameters},   {"two_arms", two_arms},   {"grasp", grasp},
+      {"task_bounds", task_bounds}, {"tasks", tasks},         {"torque_bounds", torque_bounds},
+      {"update_time", update_time}, {"wording", wording}};
   for (const auto& [name, test] : tests) {
     const bool named =
         std::any_of(names + 1, names + count, [own = name](const char* given) { return std::strcmp(own, given) == 0; });

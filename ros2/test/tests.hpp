@@ -19,6 +19,16 @@ void efforts();
 void topics();
 /// Parameters with values of other types, misspelt names, and numbers that are not finite.
 void parameters();
+/// Self-collision: margins, capsules, two arms, and refusals.
+void clearance();
+/// Obstacles of planning scenes: margins, operations, obstacles that are too close, and locks.
+void obstacles();
+/// Bounds on the torques of the commanded motion, with a payload of an uncertain mass.
+void torque_bounds();
+/// Bounds on the positions of links.
+void task_bounds();
+/// Prints the time of update(), without and with bounds.
+void update_time();
 /// Two arms side by side, each with a task: poses, twists, invalid messages, activations, and a fault.
 void two_arms();
 /// Two arms with config/two_pandas.yaml: motions and a stop of the tray do not change the grasp.

@@ -6,7 +6,7 @@ from .._core import __version__
 from .inverse import inverse
 from .motions import compare, fastest, servo, track, view
 from .studies import sweep, tune
-from .tools import bench, completion, export_header, reproduce
+from .tools import bench, completion, export_capsules, export_header, reproduce
 
 __all__ = ["command"]
 
@@ -20,7 +20,10 @@ class _InOrder(click.Group):
 
 @click.group(
     cls=_InOrder,
-    commands=[inverse, track, fastest, compare, sweep, tune, view, servo, bench, reproduce, export_header, completion],
+    commands=[
+        *(inverse, track, fastest, compare, sweep, tune, view, servo),
+        *(bench, reproduce, export_header, export_capsules, completion),
+    ],
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110, "show_default": True},
     epilog="""\b
 Examples:

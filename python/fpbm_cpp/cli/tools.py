@@ -1,5 +1,6 @@
-"""Other commands: bench, reproduce, export-header, completion."""
+"""Other commands: bench, reproduce, export-header, export-capsules, completion."""
 
+import json
 import os
 import platform
 import time
@@ -26,7 +27,7 @@ from ..motion.sweeping import sweep
 from ..parameter import parameters
 from ..robots import Robot
 from ..schemes import WITHOUT_DYNAMICS
-from ..urdf.capsules import capsules_of
+from ..urdf.capsules import capsules_of, read_joints
 from ..worst import measure
 from .plain import OUT, PLACE, WIDTH, Plain, file_errors, read_arm, refuse_links
 from .request import limit_options
@@ -47,6 +48,8 @@ HOW_WORST = (
     "and two arms."
 )
 HEADER = "Header file to write; - is the standard output."
+PARAMETERS = "Parameter file to write; - is the standard output."
+ROUNDING = 2e-6  # Added to the radius of a capsule whose ends are rounded to 1e-6 [m].
 PLANAR, PANDA = {"kind": "planar", "lengths": [1.0] * 4}, {"kind": "preset", "name": "panda"}
 CASES: dict[str, Table] = {
     "4 links, position": {"arm": PLANAR},
@@ -164,12 +167,11 @@ def export_header(
     """
     from ..io.header import export_header, export_tree, namespace_of
 
-    to_stdout = str(out) == "-"
     is_robot = str(arm) in ROBOT_PRESETS or (str(arm) not in PRESETS and len(tip) != 1)
     if is_robot and capsules:
         raise click.UsageError("--capsules are for an arm only: give one --tip.")
     try:
-        name = name or namespace_of((arm if to_stdout else out).stem)
+        name = name or namespace_of((arm if str(out) == "-" else out).stem)
         given = {key.removeprefix("limits__"): value for key, value in bounds.items() if value is not None}
         limits = JointLimits(**given) if given else None
         how: dict[str, Any] = {"name": name, "source": _source(arm, tip, base, given), "scalar": scalar}
@@ -181,14 +183,54 @@ def export_header(
             header = export_header(exported.joints, exported.tip, capsules=shapes, **how)
     except ValueError as error:
         raise click.ClickException(str(error)) from None
-    if to_stdout:
-        click.echo(header, nl=False)
-        return
-    with file_errors("write to", out):
-        write_whole(out.resolve(), header.encode())
+    _write(out, header)
 
 
 export_header.params += limit_options()
+
+
+def _write(out: Path, text: str) -> None:
+    if str(out) == "-":
+        click.echo(text, nl=False)
+        return
+    with file_errors("write to", out):
+        write_whole(out.resolve(), text.encode())
+
+
+@tool("Write capsules as ROS 2 parameters.", "export-capsules my_arm.urdf --tip tool -o capsules.yaml")
+@click.argument("urdf", metavar="URDF", type=PLACE)
+@click.option("--tip", metavar="LINK", multiple=True, required=True, help="Tip link; several for a robot.")
+@click.option("--base", metavar="LINK", help="Base link, default: the root.")
+@click.option("--srdf", type=PLACE, metavar="FILE", help="SRDF file of MoveIt, whose disabled pairs may meet.")
+@click.option("-o", "--out", type=PLACE, metavar="FILE.yaml", required=True, help=PARAMETERS)
+def export_capsules(urdf: Path, tip: tuple[str, ...], base: str | None, srdf: Path | None, out: Path) -> None:
+    """Write capsules that contain the collision geometry of a URDF file, as parameters of the ROS 2 controller.
+
+    Give the file of robot_description, the tip or the frames of the tasks, and base_frame of the controller. Each
+    capsule is in the frame of its link.
+    """
+    one, several = (tip[0], None) if len(tip) == 1 else (None, tip)
+    try:
+        with file_errors("read"):
+            places = read_joints(urdf, one, base, tips=several)[1]
+            clearance = Clearance.from_urdf(urdf, one, base, tips=several, srdf=srdf)
+    except ValueError as error:
+        raise click.ClickException(str(error)) from None
+    rows = []
+    for each in clearance.capsules:
+        in_link = np.linalg.inv(places[each.name][1])
+        ends = [in_link[:3, :3] @ end + in_link[:3, 3] for end in (each.a, each.b)]
+        rows.append(", ".join(f"{x:.6f}" for x in (*np.ravel(ends), each.radius + ROUNDING)))
+    numbers = ",\n                 ".join(rows)
+    links = json.dumps([each.name for each in clearance.capsules])
+    pairs = json.dumps([name for pair in clearance.allowed for name in pair])
+    allowed = f"      allowed: {pairs}\n" if clearance.allowed else ""  # ROS rejects empty lists.
+    _write(
+        out,
+        f"# Written by fpbm-cpp export-capsules from {urdf.name}. Each capsule: both ends and the radius [m].\n"
+        f"/**:\n  ros__parameters:\n    clearance:\n      links: {links}\n"
+        f"      capsules: [{numbers}]\n{allowed}",
+    )
 
 
 def _source(place: Path, tips: Sequence[str], base: str | None, limits: Mapping[str, Any]) -> str:

@@ -106,6 +106,21 @@ fpbm::Tree<> tree_of(const std::string& robot_description, const std::string& ba
   return tree;
 }
 
+fpbm::NamedFrame<> frame_of(const fpbm::Tree<>& tree, const urdf::Model& model, const std::string& base,
+                            const NamedLink& named) {
+  fpbm::Transform<> place;
+  const auto joints = joints_to(model, named);
+  for (auto up = joints.rbegin(); up != joints.rend(); ++up) {
+    for (std::size_t i = 0; i < tree.joints.size(); ++i) {
+      if (tree.joints[i].joint.name == (*up)->name) return {named.link, static_cast<int>(i) + 1, place};
+    }
+    place = origin_of(**up) * place;
+  }
+  fpbm::Transform<> of_base;
+  for (const auto& joint : joints_to(model, {"base_frame", base})) of_base = of_base * origin_of(*joint);
+  return {named.link, 0, inverse(of_base) * place};
+}
+
 std::vector<std::size_t> joints_to(const fpbm::Tree<>& tree, int link) {
   std::vector<std::size_t> joints;
   for (; link > 0; link = tree.joints[joints.back()].parent) joints.push_back(static_cast<std::size_t>(link - 1));
@@ -117,6 +132,11 @@ fpbm::Chain<> chain_to(const fpbm::Tree<>& tree, int link) {
   fpbm::Chain<> chain;
   for (const std::size_t i : joints_to(tree, link)) chain.joints.push_back(tree.joints[i].joint);
   return chain;
+}
+
+bool is_end(const fpbm::Tree<>& tree, int link) {
+  return link > 0 &&
+         std::none_of(tree.joints.begin(), tree.joints.end(), [link](const auto& each) { return each.parent == link; });
 }
 
 }  // namespace fpbm_controllers

@@ -30,19 +30,14 @@ using Inertia = fpbm::LinkInertia<>;
 
 }  // namespace
 
-void add_inertias(fpbm::Tree<>& tree, const std::string& robot_description) {
+void add_inertias(fpbm::Tree<>& tree, const std::string& robot_description, const std::string& base) {
   const urdf::Model model = model_of(robot_description);
   for (const auto& [name, link] : model.links_) {
     if (!link->inertial) continue;
-    fpbm::Transform<> place;  // Pose of the link in the frame of the link that `joint` moves.
-    for (std::shared_ptr<const urdf::Joint> joint = link->parent_joint; joint;
-         joint = model.getLink(joint->parent_link_name)->parent_joint) {
-      if (fpbm::Joint<>* const own = find(tree, *joint)) {
-        own->moved = fpbm::joined(own->moved, fpbm::placed(place, inertia_of(*link->inertial)));
-        break;
-      }
-      place = origin_of(*joint) * place;
-    }
+    const auto [same, number, offset] = frame_of(tree, model, base, {"robot_description", name});
+    if (number == 0) continue;
+    fpbm::Joint<>& own = tree.joints[static_cast<std::size_t>(number - 1)].joint;
+    own.moved = fpbm::joined(own.moved, fpbm::placed(offset, inertia_of(*link->inertial)));
   }
   for (const auto& [name, link] : model.links_) {
     fpbm::Joint<>* const own = link->parent_joint ? find(tree, *link->parent_joint) : nullptr;
@@ -53,7 +48,7 @@ void add_inertias(fpbm::Tree<>& tree, const std::string& robot_description) {
     }
     if (!(own->moved.mass > 0.0)) {
       throw std::invalid_argument("robot_description: link '" + name +
-                                  "' has no mass, which the command interface effort needs: give its <inertial>");
+                                  "' has no mass, which torques need: give its <inertial>");
     }
   }
 }

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <fpbm/model/presets.hpp>
 #include <hardware_interface/component_parser.hpp>
 #include <stdexcept>
 
@@ -9,25 +8,8 @@
 
 namespace fpbm_controllers {
 
-namespace {
-
-[[nodiscard]] fpbm::Chain<> preset(const std::string& name) {
-  for (const auto& arm : fpbm::presets::kAll) {
-    if (name == arm.name) return arm.chain();
-  }
-  throw std::invalid_argument("arm: is '" + name + "': must be a preset: correct the name");
-}
-
-/// Whether a link is the end of an arm, because the link carries no joint of the tree.
-[[nodiscard]] bool is_end(const fpbm::Tree<>& tree, int link) {
-  return link > 0 &&
-         std::none_of(tree.joints.begin(), tree.joints.end(), [link](const auto& each) { return each.parent == link; });
-}
-
-}  // namespace
-
 TargetController::JointLimits TargetController::preset_limits(const fpbm::Tree<>& tree) const {
-  const fpbm::Chain<> known = preset(params_.arm);
+  const fpbm::Chain<> known = preset_chain(params_.arm);
   JointLimits limits = JointLimits::none(robot_->dof());
   for (const auto& [name, link, offset] : tree.frames) {
     if (!is_end(tree, link)) continue;

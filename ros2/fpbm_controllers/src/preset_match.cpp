@@ -1,4 +1,5 @@
 #include <cmath>
+#include <fpbm/model/presets.hpp>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
@@ -48,6 +49,13 @@ struct Axis {
 }
 
 }  // namespace
+
+fpbm::Chain<> preset_chain(const std::string& name) {
+  for (const auto& arm : fpbm::presets::kAll) {
+    if (name == arm.name) return arm.chain();
+  }
+  throw std::invalid_argument("arm: is '" + name + "': must be a preset: correct the name");
+}
 
 void require_match(const fpbm::Chain<>& described, const std::string& tip, const std::string& name,
                    const fpbm::Chain<>& preset) {

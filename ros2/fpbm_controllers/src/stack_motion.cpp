@@ -22,7 +22,7 @@ using Stack = fpbm::AnyStack;
 using Space = Stack::Space;
 using Tasks = fpbm::RobotTasks<Robot, Stack>;
 using Scheme = fpbm::ByLevels<fpbm::AccelerationScheme<kDof>, Stack>;
-using Tracker = fpbm::Tracker<Tasks, Space, Scheme>;
+using Tracker = fpbm::Tracker<Tasks, Space, Scheme, SharedBounds::View>;
 using Reference = fpbm::Reference<Space>;
 constexpr int kPerLevel = Stack::kTasks / Stack::kLevels;
 
@@ -83,7 +83,8 @@ class StackMotion final : public Motion {
         limits_(settings.limits),
         parts_(parts_of(settings.tasks)),
         tasks_(Robot(settings.tree), stack_of(settings.tasks)),
-        filters_(settings.tasks.back().target + 1, Filter(fpbm::Transform<>{}, settings.bounds, settings.filter)) {
+        bounds_(settings.bounds),
+        filters_(settings.tasks.back().target + 1, Filter(fpbm::Transform<>{}, settings.target, settings.filter)) {
     const fpbm::TickOfGains<> tick{options_.dt, 0.0};
     require_stable_tasks(settings.tasks, tick);
     fpbm::require_stable(scheme_from(Joints::Zero(tasks_.dof())), tick);
@@ -91,7 +92,7 @@ class StackMotion final : public Motion {
 
   void begin(const Joints& q, const Joints& rest) override {
     const fpbm::State<kDof> start{q, Joints::Zero(q.size())};
-    tracker_.emplace(tasks_, Space{}, scheme_from(rest), start, options_, limits_);
+    tracker_.emplace(tasks_, Space{}, scheme_from(rest), start, options_, limits_, start.qd, bounds_);
     held_ = Reference::hold(tracker_->tip());
     for (const Part& part : parts_) {
       at_place(part.place, [&](auto i, int) noexcept {
@@ -181,6 +182,7 @@ class StackMotion final : public Motion {
   fpbm::Limits<fpbm::Level::kAcceleration, kDof> limits_;
   std::vector<Part> parts_;
   Tasks tasks_;
+  SharedBounds::View bounds_;
   std::vector<Filter> filters_;
   std::optional<Tracker> tracker_;
   Reference held_ = Reference::hold(Space::origin<double>());

@@ -60,7 +60,7 @@ InterfaceConfiguration TargetController::state_interface_configuration() const {
 CallbackReturn TargetController::on_configure(const rclcpp_lifecycle::State&) {
   try {
     read_parameters();
-    topics_.emplace(*get_node(), params_, tasks_);
+    topics_.emplace(*get_node(), params_, tasks_, std::move(obstacles_));
   } catch (const std::exception& error) {
     RCLCPP_ERROR(get_node()->get_logger(), "%s", error.what());
     close();
@@ -72,6 +72,7 @@ CallbackReturn TargetController::on_configure(const rclcpp_lifecycle::State&) {
 void TargetController::close() {
   topics_.reset();
   motion_.reset();
+  bounds_.reset();
 }
 
 CallbackReturn TargetController::on_cleanup(const rclcpp_lifecycle::State&) {
@@ -94,6 +95,8 @@ CallbackReturn TargetController::on_error(const rclcpp_lifecycle::State&) {
 CallbackReturn TargetController::on_activate(const rclcpp_lifecycle::State&) {
   try {
     start_ = start();
+    take_clearance();
+    bounds_.require(start_);
     motion_->begin(start_, start_);
   } catch (const std::exception& error) {  // For example, a joint is outside its limits.
     RCLCPP_ERROR(get_node()->get_logger(), "%s", error.what());
@@ -164,9 +167,9 @@ CallbackReturn TargetController::on_deactivate(const rclcpp_lifecycle::State&) {
 
 /// An interface that another thread has locked is not an error: after an error, the controller manager would deactivate
 /// the controller in motion. The arm waits at the positions that the joints have accepted until no interface is locked,
-/// and then starts from rest. If the wait is too long, the arm stops. With torques alone, an arm cannot wait in motion:
-/// a locked joint keeps its previous torque. If readings stay locked, the last reading deviates more and more from the
-/// command, and the arm stops.
+/// and then starts from rest, if the positions keep all bounds. If the wait is too long, the arm stops. With torques
+/// alone, an arm cannot wait in motion: a locked joint keeps its previous torque. If readings stay locked, the last
+/// reading deviates more and more from the command, and the arm stops.
 return_type TargetController::update(const rclcpp::Time& time, const rclcpp::Duration& period) {
   take_messages();
   const bool read = !measure();
@@ -179,16 +182,26 @@ return_type TargetController::update(const rclcpp::Time& time, const rclcpp::Dur
   locked_for_ = locked ? locked_for_ + 1 : 0;
   if (locked_for_ == kLongestLock) stop(Fault::kLocked, *locked);
   if (locked && has_positions()) command_ = {accepted_, Joints::Zero(accepted_.size())};
-  if (!locked && waits) restart();
+  if (!locked && waits && !restart()) locked_for_ = 1;
   if (locked || !read) ++report_.missed;
   report_.active = true;
   report_.time = time;
+  report_.q = command_.q;
   motion_->locate(report_);
   (void)topics_->exchange().report.try_set(report_);
   return return_type::OK;
 }
 
+void TargetController::take_clearance() noexcept {
+  (void)topics_->exchange().clearance.try_set([this](ClearanceOffer& offer) {
+    if (!offer.is_new) return;
+    std::swap(bounds_.clearance, offer.clearance);
+    offer.is_new = false;
+  });
+}
+
 void TargetController::take_messages() noexcept {
+  take_clearance();
   if (const std::optional<double> speed = topics_->exchange().speed.try_get()) {
     motion_->set_speed(*speed);
     report_.speed = *speed;
@@ -222,7 +235,11 @@ void TargetController::advance(double period) noexcept {
   command_.qd = tick_start_.qd + t * acceleration;
 }
 
-void TargetController::restart() {
+bool TargetController::restart() {
+  if (!bounds_.admit(command_.q)) {
+    report_.status = fpbm::Status::kBlocked;
+    return false;
+  }
   motion_->begin(command_.q, start_);
   pace_ = Pace(dt_);
   if (report_.fault != Fault::kNone) motion_->stop();
@@ -231,6 +248,7 @@ void TargetController::restart() {
     again.stamp = 0.0;
     if (again.count > 0 && !again.moves) (void)motion_->push(k, again);
   }
+  return true;
 }
 
 std::optional<std::size_t> TargetController::measure() {

@@ -54,21 +54,25 @@ void require_finite(const target_controller::Params& params) {
   };
   const auto& scheme = params.scheme;
   const auto& target = params.target;
-  const std::pair<const char*, double> numbers[] = {{"following_error", params.following_error},
-                                                    {"tip_rate", params.tip_rate},
-                                                    {"diagnostics_rate", params.diagnostics_rate},
-                                                    {"scheme.alpha", scheme.alpha},
-                                                    {"scheme.k1", scheme.k1},
-                                                    {"scheme.k2", scheme.k2},
-                                                    {"scheme.null_damping", scheme.null_damping},
-                                                    {"scheme.rest_stiffness", scheme.rest_stiffness},
-                                                    {"target.velocity", target.velocity},
-                                                    {"target.acceleration", target.acceleration},
-                                                    {"target.jerk", target.jerk},
-                                                    {"target.angular_velocity", target.angular_velocity},
-                                                    {"target.angular_acceleration", target.angular_acceleration},
-                                                    {"target.angular_jerk", target.angular_jerk},
-                                                    {"target.timeout", target.timeout}};
+  const std::pair<const char*, double> numbers[] = {
+      {"following_error", params.following_error},
+      {"tip_rate", params.tip_rate},
+      {"diagnostics_rate", params.diagnostics_rate},
+      {"scheme.alpha", scheme.alpha},
+      {"scheme.k1", scheme.k1},
+      {"scheme.k2", scheme.k2},
+      {"scheme.null_damping", scheme.null_damping},
+      {"scheme.rest_stiffness", scheme.rest_stiffness},
+      {"target.velocity", target.velocity},
+      {"target.acceleration", target.acceleration},
+      {"target.jerk", target.jerk},
+      {"target.angular_velocity", target.angular_velocity},
+      {"target.angular_acceleration", target.angular_acceleration},
+      {"target.angular_jerk", target.angular_jerk},
+      {"target.timeout", target.timeout},
+      {"clearance.margin", params.clearance.margin},
+      {"torque_bounds.fraction", params.torque_bounds.fraction},
+      {"torque_bounds.payload.uncertainty", params.torque_bounds.payload.uncertainty}};
   for (const auto& [name, value] : numbers) require(name, value);
   for (const auto& [name, task] : params.task.tasks_map) {
     require("task." + name + ".k1", task.k1);
@@ -120,14 +124,32 @@ void TargetController::read_parameters() {
   filter.timeout = target.timeout;
   const fpbm::TargetBounds<> bounds{target.velocity,         target.acceleration,         target.jerk,
                                     target.angular_velocity, target.angular_acceleration, target.angular_jerk};
-  const MotionSettings settings{tree, motion_tasks(tree), scheme(robot_->dof()), options, *limits_, bounds, filter};
   try {
+    make_bounds(tree);
+    const MotionSettings settings{tree,   motion_tasks(tree), scheme(robot_->dof()), options, *limits_, bounds,
+                                  filter, bounds_.view()};
     motion_ = is_tip() && robot_->dof() >= fpbm::Pose::kRows ? make_tip_motion(settings) : make_stack_motion(settings);
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(with_names_of_ros(error.what()));
   }
+}
+
+void TargetController::make_bounds(const fpbm::Tree<>& tree) {
+  bounds_.reset();
+  obstacles_.reset();
   torque_.reset();
-  if (params_.command_interfaces.back() == "effort") torque_.emplace(computed_torque(tree));
+  if (params_.clearance.margin > 0.0) {
+    obstacles_.emplace(clearance_settings(tree));
+    bounds_.clearance = obstacles_->clearance();
+  }
+  if (!params_.task_bounds.empty()) bounds_.task_bounds = task_bounds(tree);
+  const bool bounds_torques = params_.torque_bounds.fraction > 0.0;
+  const bool commands_torques = params_.command_interfaces.back() == "effort";
+  if (!bounds_torques && !commands_torques) return;
+  fpbm::Tree<> with_inertias = tree;
+  add_inertias(with_inertias, get_robot_description(), params_.base_frame);
+  if (bounds_torques) bounds_.torque_bounds = torque_bounds(with_inertias);
+  if (commands_torques) torque_.emplace(computed_torque(with_inertias));
 }
 
 TargetController::Joints TargetController::joint_numbers(const char* name, const std::vector<double>& values) const {

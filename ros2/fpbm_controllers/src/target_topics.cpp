@@ -1,6 +1,8 @@
 #include "fpbm_controllers/target_topics.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <utility>
 
 namespace fpbm_controllers {
 
@@ -29,9 +31,11 @@ void publish_diagnostics(const std::string& node, Exchange& exchange,
                          rclcpp::Publisher<diagnostic_msgs::msg::DiagnosticArray>& publisher) {
   const Report report = exchange.report.get();
   if (!report.active) return;
+  std::optional<NearestPair> nearest;
+  if (exchange.obstacles) nearest = nearest_pair(*exchange.obstacles->clearance(), report.q);
   diagnostic_msgs::msg::DiagnosticArray message;
   message.header.stamp = report.time;
-  message.status.push_back(diagnostic_of(report, exchange.diagnosed, exchange.joints, exchange.names));
+  message.status.push_back(diagnostic_of(report, exchange.diagnosed, exchange.joints, exchange.names, nearest));
   message.status.back().name = node + ": motion";
   message.status.back().hardware_id = exchange.arm;
   exchange.diagnosed = report;
@@ -65,8 +69,9 @@ void log_events(const Report& report, Exchange& exchange, const rclcpp::Logger& 
 }  // namespace
 
 TargetTopics::TargetTopics(rclcpp_lifecycle::LifecycleNode& node, const target_controller::Params& params,
-                           const std::vector<TaskSettings>& tasks)
+                           const std::vector<TaskSettings>& tasks, std::optional<Obstacles> obstacles)
     : exchange_(std::make_shared<Exchange>(tasks.size())) {
+  exchange_->obstacles = std::move(obstacles);
   exchange_->arm = params.arm;
   exchange_->joints = params.joints;
   std::vector<std::shared_ptr<TipPublisher>> tips;
@@ -90,6 +95,20 @@ TargetTopics::TargetTopics(rclcpp_lifecycle::LifecycleNode& node, const target_c
         RCLCPP_WARN_THROTTLE(logger, *clock, 1000, "speed dropped: it is %s, and must be in (0, 1]",
                              std::to_string(message.data).c_str());
       });
+  if (exchange_->obstacles) {
+    // Reliable, because a lost difference would lose an obstacle.
+    obstacles_ = node.create_subscription<moveit_msgs::msg::PlanningScene>(
+        "~/obstacles", rclcpp::QoS(100),
+        [exchange = exchange_, logger = node.get_logger()](const moveit_msgs::msg::PlanningScene& scene) {
+          std::vector<std::string> warnings = exchange->obstacles->apply(scene);
+          for (const std::string& text : warnings) {
+            const auto& before = exchange->scene_warnings;
+            if (std::count(before.begin(), before.end(), text) == 0) RCLCPP_WARN(logger, "%s", text.c_str());
+          }
+          exchange->scene_warnings = std::move(warnings);
+          exchange->clearance.set(ClearanceOffer{exchange->obstacles->clearance(), true});
+        });
+  }
   using Diagnostics = rclcpp::Publisher<diagnostic_msgs::msg::DiagnosticArray>;
   const std::shared_ptr<Diagnostics> diagnostics =
       node.create_publisher<diagnostic_msgs::msg::DiagnosticArray>("/diagnostics", rclcpp::SystemDefaultsQoS());

@@ -29,7 +29,8 @@ class TipMotion final : public Motion {
         options_(settings.options),
         limits_(settings.limits),
         arm_(arm_to(settings.tree, settings.tasks[0].frame)),
-        filter_(fpbm::Transform<>{}, settings.bounds, settings.filter) {
+        bounds_(settings.bounds),
+        filter_(fpbm::Transform<>{}, settings.target, settings.filter) {
     try {
       fpbm::require_stable(scheme_from(Joints::Zero(arm_.dof())), fpbm::TickOfGains<>{options_.dt, 0.0});
     } catch (const std::invalid_argument& error) {
@@ -39,7 +40,7 @@ class TipMotion final : public Motion {
 
   void begin(const Joints& q, const Joints& rest) override {
     const fpbm::State<kDof> start{q, Joints::Zero(q.size())};
-    tracker_.emplace(arm_, fpbm::Pose{}, scheme_from(rest), start, options_, limits_);
+    tracker_.emplace(arm_, fpbm::Pose{}, scheme_from(rest), start, options_, limits_, start.qd, bounds_);
     (void)filter_.reset(tracker_->tip());
   }
 
@@ -73,8 +74,9 @@ class TipMotion final : public Motion {
   fpbm::TrackerOptions<> options_;
   fpbm::Limits<Scheme::kLevel, kDof> limits_;
   Arm arm_;
+  SharedBounds::View bounds_;
   fpbm::TargetFilter<fpbm::Pose> filter_;
-  std::optional<fpbm::Tracker<Arm, fpbm::Pose, Scheme>> tracker_;
+  std::optional<fpbm::Tracker<Arm, fpbm::Pose, Scheme, SharedBounds::View>> tracker_;
 };
 
 }  // namespace

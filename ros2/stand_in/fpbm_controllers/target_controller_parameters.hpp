@@ -55,6 +55,28 @@ struct Params {
       std::vector<double> centre = {0.0, 0.0, 0.0};
     } payload;
   } effort;
+  struct TorqueBounds {
+    double fraction = 0.0;
+    struct Payload {
+      double uncertainty = 0.0;
+    } payload;
+  } torque_bounds;
+  struct Clearance {
+    double margin = 0.0;
+    std::vector<std::string> links = {};
+    std::vector<double> capsules = {};
+    std::vector<std::string> allowed = {};
+    std::int64_t obstacles = 16;
+  } clearance;
+  std::vector<std::string> task_bounds = {};
+  struct TaskBound {
+    struct MapTaskBounds {
+      std::string frame;
+      std::vector<double> lower = {};
+      std::vector<double> upper = {};
+    };
+    std::map<std::string, MapTaskBounds> task_bounds_map;
+  } task_bound;
   double following_error = 0.05;
   double tip_rate = 50.0;
   double diagnostics_rate = 1.0;
@@ -138,6 +160,20 @@ void for_each_parameter(target_controller::Params& p, Visit&& visit) {
   visit("effort.robot_adds_gravity", p.effort.robot_adds_gravity, any);
   visit("effort.payload.mass", p.effort.payload.mass, not_negative);
   visit("effort.payload.centre", p.effort.payload.centre, three);
+  visit("torque_bounds.fraction", p.torque_bounds.fraction, within(0.0, 1.0));
+  visit("torque_bounds.payload.uncertainty", p.torque_bounds.payload.uncertainty, not_negative);
+  visit("clearance.margin", p.clearance.margin, not_negative);
+  visit("clearance.links", p.clearance.links, any);
+  visit("clearance.capsules", p.clearance.capsules, any);
+  visit("clearance.allowed", p.clearance.allowed, any);
+  visit("clearance.obstacles", p.clearance.obstacles, [](std::int64_t value) { return 0 <= value && value <= 1000; });
+  visit("task_bounds", p.task_bounds, unique);
+  for (const std::string& name : p.task_bounds) {
+    auto& bound = p.task_bound.task_bounds_map[name];
+    visit("task_bound." + name + ".frame", bound.frame, any);
+    visit("task_bound." + name + ".lower", bound.lower, any);
+    visit("task_bound." + name + ".upper", bound.upper, any);
+  }
   visit("following_error", p.following_error, above_zero);
   visit("tip_rate", p.tip_rate, within(0.1, 1000.0));
   visit("diagnostics_rate", p.diagnostics_rate, within(0.1, 100.0));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <mutex>
 #include <optional>
 
@@ -15,6 +16,11 @@ class RealtimeThreadSafeBox {
   bool try_set(const T& value) {
     const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
     if (lock.owns_lock()) value_ = value;
+    return lock.owns_lock();
+  }
+  bool try_set(const std::function<void(T&)>& change) {
+    const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
+    if (lock.owns_lock()) change(value_);
     return lock.owns_lock();
   }
   [[nodiscard]] std::optional<T> try_get() const {

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <fpbm/bound/detail/link_capsule.hpp>
 #include <fpbm/model/chain.hpp>
 #include <fpbm/model/tree.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace fpbm_controllers {
@@ -25,13 +27,29 @@ struct NamedLink {
 /// Adds the inertias of the links, and the friction of the drives, from a robot_description. A link that is fixed to a
 /// link of the tree, or moves relative to this link with joints that are not in the tree, is added to this link, with
 /// those joints at position zero. Throws std::invalid_argument, which names the link, if a joint moves no mass.
-void add_inertias(fpbm::Tree<>& tree, const std::string& robot_description);
+void add_inertias(fpbm::Tree<>& tree, const std::string& robot_description, const std::string& base);
 
 /// The joints of a tree from its base to a link.
 [[nodiscard]] std::vector<std::size_t> joints_to(const fpbm::Tree<>& tree, int link);
 
 /// The joints of joints_to() as a chain with the link as tip. A mimic joint keeps the number of the leader in the tree.
 [[nodiscard]] fpbm::Chain<> chain_to(const fpbm::Tree<>& tree, int link);
+
+/// Whether a link is the end of an arm, because the link carries no joint of the tree.
+[[nodiscard]] bool is_end(const fpbm::Tree<>& tree, int link);
+
+/// The arm of a preset. Throws std::invalid_argument if the preset does not exist.
+[[nodiscard]] fpbm::Chain<> preset_chain(const std::string& name);
+
+/// The capsules of a preset on each arm of a tree, with the names of the links of robot_description, and the pairs of
+/// names that never collide. Throws std::invalid_argument if the preset has no capsules, or the joint frames of an arm
+/// differ from the frames of the preset.
+struct NamedCapsules {
+  std::vector<fpbm::LinkCapsule<>> capsules;
+  std::vector<std::pair<std::string, std::string>> never_collide;
+};
+[[nodiscard]] NamedCapsules preset_capsules(const fpbm::Tree<>& tree, const std::string& robot_description,
+                                            const std::string& base, const std::string& name);
 
 /// Throws std::invalid_argument, which names the joint and the difference, if a preset is not the described arm:
 /// axes differ by more than 0.02 m or 0.05 rad from each other, or a described range or velocity exceeds the preset's

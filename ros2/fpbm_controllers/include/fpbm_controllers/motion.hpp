@@ -7,6 +7,7 @@
 #include <fpbm/objective/null_space.hpp>
 #include <fpbm/realtime/tick.hpp>
 #include <fpbm/target/target_filter.hpp>
+#include <fpbm_controllers/motion_bounds.hpp>
 #include <fpbm_controllers/report.hpp>
 #include <fpbm_controllers/target.hpp>
 #include <memory>
@@ -54,8 +55,9 @@ struct MotionSettings {
   MotionScheme scheme;
   fpbm::TrackerOptions<> options;
   fpbm::Limits<fpbm::Level::kAcceleration, Eigen::Dynamic> limits;
-  fpbm::TargetBounds<> bounds;  ///< Bounds on each task's reference.
+  fpbm::TargetBounds<> target;  ///< Bounds on each task's reference.
   fpbm::TargetFilterOptions<> filter;
+  SharedBounds::View bounds;
 };
 
 /// The motion of a robot toward the targets of its tasks, each through a filter.
@@ -70,8 +72,8 @@ class Motion {
   Motion& operator=(const Motion&) = delete;
   virtual ~Motion() = default;
 
-  /// Starts at rest from a posture. rest: the default rest posture. Throws std::invalid_argument if the posture is
-  /// beyond a limit.
+  /// Starts at rest from a posture, which must keep the bounds. rest: the default rest posture. Throws
+  /// std::invalid_argument if the posture is beyond a limit.
   virtual void begin(const Joints& q, const Joints& rest) = 0;
   /// Sets a new target of a task. Returns false if the target is rejected because of its stamp.
   virtual bool push(std::size_t task, const Target& target) noexcept = 0;

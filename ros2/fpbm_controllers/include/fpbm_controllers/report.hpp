@@ -5,7 +5,10 @@
 #include <cstdint>
 #include <diagnostic_msgs/msg/diagnostic_status.hpp>
 #include <fpbm/core/status.hpp>
+#include <fpbm/core/types.hpp>
 #include <fpbm/geometry/rotation.hpp>
+#include <fpbm_controllers/nearest_pair.hpp>
+#include <optional>
 #include <rclcpp/time.hpp>
 #include <string>
 #include <vector>
@@ -41,6 +44,7 @@ struct Report {
   std::size_t limited_joint = 0;
   rclcpp::Time time = rclcpp::Time();
   std::array<TaskReport, kTasks> tasks;
+  fpbm::Vector<Eigen::Dynamic> q;  ///< Commanded posture. No memory is allocated for robots of fpbm.
 };
 
 /// Description of a fault, with advice.
@@ -93,10 +97,12 @@ struct Report {
   return name.empty() ? "" : " of task '" + name + "'";
 }
 
-/// A report as a message. before: the report of the previous message. tasks: names of the tasks.
+/// A report as a message. before: the report of the previous message. tasks: names of the tasks. nearest: None without
+/// a clearance.
 [[nodiscard]] inline diagnostic_msgs::msg::DiagnosticStatus diagnostic_of(const Report& report, const Report& before,
                                                                           const std::vector<std::string>& joints,
-                                                                          const std::vector<std::string>& tasks) {
+                                                                          const std::vector<std::string>& tasks,
+                                                                          const std::optional<NearestPair>& nearest) {
   using Message = diagnostic_msgs::msg::DiagnosticStatus;
   Message message;
   if (report.fault != Fault::kNone) {
@@ -119,6 +125,10 @@ struct Report {
       message.level = Message::WARN;
       message.message =
           "targets" + of_task(tasks[k]) + " are rejected: the last stamp is " + rejected_message(report.tasks[k]);
+    }
+    if (message.level != Message::ERROR && nearest && nearest->is_too_close()) {
+      message.level = Message::WARN;
+      message.message = nearest->too_close() + "the arm only moves away. Remove the obstacle.";
     }
   }
   const auto add = [&message](const std::string& key, const std::string& value) {
@@ -144,6 +154,10 @@ struct Report {
   add("calls that came too soon", std::to_string(report.early));
   add("speed", std::to_string(report.speed));
   add("ticks with a limited torque", std::to_string(report.limited));
+  if (nearest) {
+    add("nearest pair", nearest->names);
+    add("distance of the nearest pair [m]", std::to_string(nearest->distance));
+  }
   return message;
 }
 

@@ -26,15 +26,24 @@ template <typename Header>
 }
 
 /// None if a number is not finite, or the quaternion's length differs from 1 by more than 0.01.
-[[nodiscard]] inline std::optional<Target> target_of(const geometry_msgs::msg::PoseStamped& message) {
-  const auto& p = message.pose.position;
-  const auto& o = message.pose.orientation;
+[[nodiscard]] inline std::optional<fpbm::Transform<>> transform_of(const geometry_msgs::msg::Pose& message) {
+  const auto& p = message.position;
+  const auto& o = message.orientation;
   const fpbm::Vector<4> q(o.w, o.x, o.y, o.z);
+  fpbm::Transform<> pose;
+  pose.p = {p.x, p.y, p.z};
+  if (!pose.p.allFinite() || !(std::abs(q.norm() - 1.0) < 0.01)) return std::nullopt;
+  pose.R = fpbm::rotation(fpbm::Vector<4>(q / q.norm()));
+  return pose;
+}
+
+/// None if transform_of() returns none.
+[[nodiscard]] inline std::optional<Target> target_of(const geometry_msgs::msg::PoseStamped& message) {
+  const std::optional<fpbm::Transform<>> pose = transform_of(message.pose);
+  if (!pose) return std::nullopt;
   Target target;
   target.stamp = seconds(message.header);
-  target.pose.p = {p.x, p.y, p.z};
-  if (!target.pose.p.allFinite() || !(std::abs(q.norm() - 1.0) < 0.01)) return std::nullopt;
-  target.pose.R = fpbm::rotation(fpbm::Vector<4>(q / q.norm()));
+  target.pose = *pose;
   return target;
 }
 

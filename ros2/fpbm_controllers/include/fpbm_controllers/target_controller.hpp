@@ -7,6 +7,7 @@
 #include <fpbm/model/robot.hpp>
 #include <fpbm_controllers/computed_torque.hpp>
 #include <fpbm_controllers/motion.hpp>
+#include <fpbm_controllers/obstacles.hpp>
 #include <fpbm_controllers/pace.hpp>
 #include <fpbm_controllers/report.hpp>
 #include <fpbm_controllers/sourced_limits.hpp>
@@ -64,14 +65,28 @@ class TargetController : public controller_interface::ControllerInterface {
   void narrow_softly(SourcedLimits& limits) const;
   /// The limits of the preset, for each arm of a tree. Throws std::invalid_argument if an arm is not the preset.
   [[nodiscard]] JointLimits preset_limits(const fpbm::Tree<>& tree) const;
-  /// The torques of a tree from described(), with the inertias of robot_description.
-  [[nodiscard]] ComputedTorque computed_torque(fpbm::Tree<> tree) const;
+  /// Sets the bounds and the torques of a tree from described().
+  void make_bounds(const fpbm::Tree<>& tree);
+  /// The dynamics of a tree with inertias, with a payload of the mass [kg] at the tip.
+  [[nodiscard]] ComputedTorque::Model dynamics(const fpbm::Tree<>& tree, double mass) const;
+  /// The efforts of all joints. Throws std::invalid_argument if a joint has no effort.
+  [[nodiscard]] Joints efforts() const;
+  /// The torques of a tree with inertias.
+  [[nodiscard]] ComputedTorque computed_torque(const fpbm::Tree<>& tree) const;
+  /// The bounds on the torques of a tree with inertias.
+  [[nodiscard]] std::shared_ptr<TorqueBounds> torque_bounds(const fpbm::Tree<>& tree) const;
+  /// The bounds on the positions of links.
+  [[nodiscard]] std::shared_ptr<TaskBounds> task_bounds(const fpbm::Tree<>& tree) const;
+  [[nodiscard]] ClearanceSettings clearance_settings(const fpbm::Tree<>& tree) const;
   /// A list of a parameter as a vector. Throws std::invalid_argument unless the list has a finite number for each
   /// joint.
   [[nodiscard]] Joints joint_numbers(const char* name, const std::vector<double>& values) const;
   /// Whether the commands contain positions, and not only torques.
   [[nodiscard]] bool has_positions() const noexcept { return params_.command_interfaces[0] == "position"; }
   void close();
+
+  /// Takes the clearance among the newest obstacles.
+  void take_clearance() noexcept;
 
   /// Throws std::runtime_error, which names the joint, if an interface cannot be read or the arm moves.
   [[nodiscard]] Joints start();
@@ -82,8 +97,9 @@ class TargetController : public controller_interface::ControllerInterface {
   /// Advances the command by the time since the last call, by at most a tick: late calls delay the arm. A tick has the
   /// length for which the limits were made. A call before the end of a tick commands the state of its time in the tick.
   void advance(double period) noexcept;
-  /// Starts from rest at the commanded positions. The motion to the newest poses continues.
-  void restart();
+  /// Starts from rest at the commanded positions. The motion to the newest poses continues. Returns false without
+  /// effect if the commanded positions violate a bound.
+  [[nodiscard]] bool restart();
   /// Reads the joints' positions, and for the feedback of torques the velocities. A joint that cannot be read keeps its
   /// last reading. Returns the number of the first joint that cannot be read.
   [[nodiscard]] std::optional<std::size_t> measure();
@@ -107,9 +123,11 @@ class TargetController : public controller_interface::ControllerInterface {
   std::optional<fpbm::Robot<kDof>> robot_;
   double dt_ = 0.0;  ///< Length of a tick [s].
   std::optional<fpbm::Limits<fpbm::Level::kAcceleration, kDof>> limits_;
+  std::optional<Obstacles> obstacles_;  ///< From configuration until topics_ takes them.
   std::optional<TargetTopics> topics_;
 
   // Used only by the loop of an active controller.
+  SharedBounds bounds_;
   std::unique_ptr<Motion> motion_;
   std::optional<ComputedTorque> torque_;  ///< None without the command interface effort.
   Pace pace_;

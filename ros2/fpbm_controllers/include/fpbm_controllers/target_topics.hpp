@@ -3,12 +3,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <diagnostic_msgs/msg/diagnostic_array.hpp>
+#include <fpbm_controllers/obstacles.hpp>
 #include <fpbm_controllers/report.hpp>
 #include <fpbm_controllers/target.hpp>
 #include <fpbm_controllers/task_settings.hpp>
 #include <geometry_msgs/msg/pose_stamped.hpp>
 #include <geometry_msgs/msg/twist_stamped.hpp>
 #include <memory>
+#include <moveit_msgs/msg/planning_scene.hpp>
+#include <optional>
 #include <rclcpp/rclcpp.hpp>
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
 #include <realtime_tools/realtime_thread_safe_box.hpp>
@@ -27,6 +30,12 @@ struct TargetExchange {
   std::uint64_t received = 0;
 };
 
+/// A clearance for the loop, which swaps its own clearance for a new clearance: only the callbacks allocate and free.
+struct ClearanceOffer {
+  std::shared_ptr<Clearance> clearance;
+  bool is_new = false;
+};
+
 /// Data that the loop and the node's callbacks exchange. The loop never waits for a callback. Each callback shares the
 /// ownership of the data, because the topics may close while a callback runs.
 struct Exchange {
@@ -34,21 +43,25 @@ struct Exchange {
 
   std::vector<TargetExchange> tasks;
   realtime_tools::RealtimeThreadSafeBox<double> speed{1.0};  ///< In (0, 1].
+  realtime_tools::RealtimeThreadSafeBox<ClearanceOffer> clearance;
   realtime_tools::RealtimeThreadSafeBox<Report> report;
 
   // Used only by the callbacks.
   std::string arm;
   std::vector<std::string> joints;
-  std::vector<std::string> names;  ///< Names of the tasks.
-  Report logged;                   ///< The last report whose events were logged.
-  Report diagnosed;                ///< The last published report.
+  std::vector<std::string> names;           ///< Names of the tasks.
+  std::optional<Obstacles> obstacles;       ///< None without a clearance.
+  std::vector<std::string> scene_warnings;  ///< Warnings about the last scene, which are not repeated.
+  Report logged;                            ///< The last report whose events were logged.
+  Report diagnosed;                         ///< The last published report.
 };
 
-/// The controller's topics: three for each task, the speed, and the diagnostics. The destructor closes the topics.
+/// The controller's topics: three for each task, the speed, the obstacles if there is a clearance, and the diagnostics.
+/// The destructor closes the topics.
 class TargetTopics {
  public:
   TargetTopics(rclcpp_lifecycle::LifecycleNode& node, const target_controller::Params& params,
-               const std::vector<TaskSettings>& tasks);
+               const std::vector<TaskSettings>& tasks, std::optional<Obstacles> obstacles);
 
   [[nodiscard]] Exchange& exchange() noexcept { return *exchange_; }
 
@@ -61,6 +74,7 @@ class TargetTopics {
   std::vector<std::shared_ptr<rclcpp::Subscription<geometry_msgs::msg::PoseStamped>>> poses_;
   std::vector<std::shared_ptr<rclcpp::Subscription<geometry_msgs::msg::TwistStamped>>> twists_;
   std::shared_ptr<rclcpp::Subscription<std_msgs::msg::Float64>> speed_;
+  std::shared_ptr<rclcpp::Subscription<moveit_msgs::msg::PlanningScene>> obstacles_;
   std::shared_ptr<rclcpp::TimerBase> tip_timer_;
   std::shared_ptr<rclcpp::TimerBase> diagnostics_timer_;
 };

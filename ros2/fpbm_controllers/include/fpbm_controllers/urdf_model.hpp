@@ -1,6 +1,7 @@
 #pragma once
 
 #include <fpbm/geometry/rotation.hpp>
+#include <fpbm_controllers/description.hpp>
 #include <stdexcept>
 #include <string>
 #if __has_include(<urdf/model.hpp>)
@@ -24,6 +25,12 @@ namespace fpbm_controllers {
   const auto& [p, q] = pose;
   return {{p.x, p.y, p.z}, fpbm::rotation(fpbm::Vector<4>(q.w, q.x, q.y, q.z))};
 }
+
+/// The place of a link: a link of the tree, and the frame of the link in its frame. Joints that are not in the tree are
+/// at zero. A link that no joint of the tree moves is placed in the frame of link base. Throws std::invalid_argument,
+/// which names the parameter, if the link does not exist.
+[[nodiscard]] fpbm::NamedFrame<> frame_of(const fpbm::Tree<>& tree, const urdf::Model& model, const std::string& base,
+                                          const NamedLink& named);
 
 /// The frame of a joint at position zero, in the frame of the parent link.
 [[nodiscard]] inline fpbm::Transform<> origin_of(const urdf::Joint& joint) {
