@@ -25,8 +25,8 @@ template <typename Source, typename Scalar>
 }
 
 /// Advances a source after a tick of dt [s] at a level. stopping: whether the arm stops. While the arm stops, a
-/// PathFollower waits, and a TargetFilter or a Stream continues. fraction: Tick::path_fraction, which slows the clock of a kept
-/// path, also while the arm stops.
+/// PathFollower waits, and a TargetFilter or a Stream continues. fraction: Tick::path_fraction, which slows the clock
+/// of a kept path, also while the arm stops.
 template <typename Space, typename Scalar>
 void advance_source(const Reference<Space, Scalar>&, Scalar, Level, bool, Scalar) noexcept {}
 template <typename Path, typename Scalar>
