@@ -7,12 +7,14 @@
 #include "fpbm/path/path_follower.hpp"
 #include "fpbm/path/reference.hpp"
 #include "fpbm/realtime/detail/tick_references.hpp"
-#include "fpbm/target/stream.hpp"
 #include "fpbm/target/target_filter.hpp"
 
 /// Sources of references for a tick: a Reference, which continues at constant acceleration, a PathFollower, a
 /// TargetFilter, or a Stream.
 namespace fpbm {
+
+template <typename Space, typename Scalar, int kPoints>
+class Stream;
 
 /// The reference after `seconds` [s] of the tick.
 template <typename Space, typename Scalar>
