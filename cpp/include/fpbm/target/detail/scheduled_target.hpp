@@ -26,9 +26,6 @@ class ScheduledTarget {
   using Timed = TimedPoint<Space, Scalar>;
   using Piece = ChunkPiece<Space, Scalar>;
 
-  [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
-  void clear() noexcept { size_ = 0; }
-
   /// Changes the time that counts as zero to a time `seconds` [s] later, and discards the pieces that end before the
   /// time `now` on the new clock.
   void shift(Scalar seconds, Scalar now) noexcept {
@@ -59,6 +56,9 @@ class ScheduledTarget {
     const std::size_t end = first + static_cast<std::size_t>(count);
     if (end > pieces_.size()) return false;
     const Twist none = zero();
+    const Scalar since = first > 0 ? points[0].time - pieces_[first - 1].from : Scalar(0);
+    const bool moves = first > 0 && since < pieces_[first - 1].h;
+    const Twist before_chunk = moves ? pieces_[first - 1].at(since).xd : none;
     for (std::size_t k = first; k < end; ++k) {
       const auto& [time, x, xd, xdd] = points[k - first];
       pieces_[k] = {time, {usable(x), none, none}, Scalar(0), none, {none, none}};
@@ -71,6 +71,7 @@ class ScheduledTarget {
     if (first > 0) pieces_[first - 1].joined = false;
     size_ = end;
     set_spline_velocities<Capacity>(pieces_.data() + first, static_cast<std::size_t>(count));
+    if (moves && count > 2) continue_velocity(pieces_.data() + first, before_chunk);
     for (std::size_t k = first; k < end; ++k) {
       const auto& given = points[k - first].xd;
       if (given) pieces_[k].start.xd = *given;
@@ -123,7 +124,7 @@ class ScheduledTarget {
     return true;
   }
 
-  /// Index of the piece at a time: the first piece if the time is before all pieces.
+  /// Index of the piece at a time.
   [[nodiscard]] std::size_t active(Scalar time) const noexcept {
     std::size_t k = 0;
     while (k + 1 < size_ && pieces_[k + 1].from <= time) ++k;

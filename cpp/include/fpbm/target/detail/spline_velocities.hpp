@@ -1,6 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace fpbm {
@@ -44,6 +46,20 @@ void set_spline_velocities(Piece* piece, std::size_t n) noexcept {
   piece[n - 1].start.xd =
       (at_end(piece[n - 2], piece[n - 3]) - both * piece[n - 2].start.xd) / (piece[n - 3].h - both * upper[n - 2]);
   for (std::size_t k = n - 1; k-- > 0;) piece[k].start.xd -= upper[k] * piece[k + 1].start.xd;
+}
+
+/// Sets the velocity at the first point of a chunk of at least three points to the velocity before the chunk, for each
+/// coordinate in which they differ by less than the difference between the velocities of the first quotient and of the
+/// parabola through the first three points: an estimate from one side has an error of this size.
+template <typename Piece>
+void continue_velocity(Piece* piece, const typename Piece::Twist& before) noexcept {
+  using Scalar = typename Piece::Scalar;
+  auto& xd = piece[0].start.xd;
+  const Scalar part = piece[0].h / (piece[0].h + piece[1].h);
+  for (Eigen::Index i = 0; i < xd.size(); ++i) {
+    const Scalar error = part * std::abs(piece[1].d(i) / piece[1].h - piece[0].d(i) / piece[0].h);
+    if (std::abs(before(i) - xd(i)) < error) xd(i) = before(i);
+  }
 }
 
 }  // namespace fpbm
