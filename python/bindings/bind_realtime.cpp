@@ -186,6 +186,16 @@ class PyTracker {
     });
   }
 
+  [[nodiscard]] PyTick tick(PyStream& stream) {
+    const auto* stacked = std::get_if<Stacked>(&any_);
+    if (stacked == nullptr || (*stacked)->plan().tasks.size() != 1) {
+      validation::reject("stream", ": must be given in a dictionary by task name, to a tracker of a stack");
+    }
+    PyReferences references;
+    references[py::str((*stacked)->plan().tasks.front().name)] = py::cast(&stream);
+    return tick(references);
+  }
+
   [[nodiscard]] PyTick resolve_measured(const ArrayLike& q, const ArrayLike& qd, const ArrayLike& x,
                                         const OptionalArray& xd, const OptionalArray& xdd) {
     return visit(kByName, [&](auto& tracker, auto space) {
@@ -451,10 +461,13 @@ ParameterError
            "One tick along a path. The clock of the path advances by one tick.")
       .def("tick", py::overload_cast<PyTargetFilter&>(&PyTracker::tick), py::arg("filter"),
            "One tick toward the reference of a filter. The filter advances by one tick, also after stop.")
+      .def("tick", py::overload_cast<PyStream&>(&PyTracker::tick), py::arg("stream"),
+           "One tick of a stack of one task toward the reference of a stream. The stream advances by one tick.")
       .def("tick", py::overload_cast<const PyReferences&>(&PyTracker::tick), py::arg("references"),
            R"(One tick of a stack toward references: a dictionary by task name.
 
-Each value is a point x, (x, xd) or (x, xd, xdd), and for positions and poses also a PathFollower or a TargetFilter. x
+Each value is a point x, (x, xd) or (x, xd, xdd), for positions and poses also a PathFollower or a TargetFilter, and
+for postures and poses also a JointStream or PoseStream. x
 has shape (3,) for a position, (3, 3) for an orientation, (4, 4) for a pose, (3,) for an axis, (joints,) for a posture
 [m, rad]. A task that is not in the dictionary keeps its last target, at rest; the first target is the start of the
 task.)")

@@ -14,6 +14,7 @@ void bind_limits(py::module_& m);
 void bind_clearance(py::module_& m);
 void bind_sim(py::module_& m);
 void bind_target_filter(py::module_& m);
+void bind_stream(py::module_& m);
 void bind_task(py::module_& m);
 void bind_realtime(py::module_& m);
 void bind_inverse(py::module_& m);

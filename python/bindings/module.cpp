@@ -43,7 +43,7 @@ PYBIND11_MODULE(_core, m) {
   py::register_local_exception_translator(&translate);
   using namespace fpbm::bindings;
   for (auto* const bind : {bind_model, bind_dynamics, bind_path, bind_scheme, bind_clearance, bind_sim, bind_limits,
-                           bind_target_filter, bind_task, bind_realtime, bind_inverse}) {
+                           bind_target_filter, bind_stream, bind_task, bind_realtime, bind_inverse}) {
     bind(m);
   }
 }

@@ -49,6 +49,16 @@ std::optional<StackReferences::Source> StackLoop::source_of(const StackTask& tas
     if (dt != dt_) validation::fail("filter's dt", dt, "the tracker's dt = ", dt_);
     return source;
   }
+  if (py::isinstance<PyStream>(given)) {
+    auto& stream = py::cast<PyStream&>(given);
+    if (stream.kind != task.kind || stream.size != task.size) {
+      validation::reject("stream",
+                         ": is for another task than '" + task.name +
+                             "': must be a JointStream for a posture of as many joints, or a PoseStream for a pose");
+    }
+    if (stream.dt != dt_) validation::fail("stream's dt", stream.dt, "the tracker's dt = ", dt_);
+    return &stream;
+  }
   return std::nullopt;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "stack_tasks.hpp"
+#include "stream.hpp"
 #include "tracker.hpp"
 
 namespace fpbm::bindings {
@@ -15,9 +16,10 @@ namespace fpbm::bindings {
 class StackReferences {
  public:
   using Space = AnyStack::Space;
-  /// A path or a filter.
+  /// A path, a filter or a stream.
   using Source =
-      std::variant<AnyFollower<Position<3>>*, AnyFollower<Pose>*, TargetFilter<Position<3>>*, TargetFilter<Pose>*>;
+      std::variant<AnyFollower<Position<3>>*, AnyFollower<Pose>*, TargetFilter<Position<3>>*, TargetFilter<Pose>*,
+                   PyStream*>;
   using Sources = std::vector<std::pair<const StackTask*, Source>>;
   using Targets = std::vector<std::pair<const StackTask*, StackTarget>>;
 

@@ -9,10 +9,12 @@ from . import arms, joints, paths, robots, schemes, tasks
 from ._core import (
     MAX_DOF,
     InverseKinematics,
+    JointStream,
     Kinematics,
     Limiter,
     Nearest,
     PathFollower,
+    PoseStream,
     Posture,
     Postures,
     SaturatedLevels,
@@ -54,7 +56,8 @@ __all__ = ["Run", "RunStatus", "Sweep", "Tuning", "load", "simulate", "sweep", "
 __all__ += ["Comparison", "comparison", "fastest", "servo", "view"]
 __all__ += ["Capsule", "Clearance", "Cuboid", "HalfSpace", "Nearest"]
 __all__ += ["InverseKinematics", "PathFailure", "Posture", "Postures", "StartPosture", "start_posture"]
-__all__ += ["Kinematics", "Limiter", "PathFollower", "SaturatedMotion", "Status", "TargetFilter", "Tick"]
+__all__ += ["JointStream", "Kinematics", "Limiter", "PathFollower", "PoseStream", "SaturatedMotion"]
+__all__ += ["Status", "TargetFilter", "Tick"]
 __all__ += ["SaturatedLevels", "TaskBounds", "TorqueBounds", "Tracker", "failed", "saturate"]
 __all__ += ["MAX_DOF", "ParameterError", "ResolutionError", "SweepInterrupted", "TuneInterrupted", "UrdfWarning"]
 __all__ += ["__version__", "rotation", "rotation_vector"]

@@ -13,6 +13,7 @@ __all__: list[str] = [
     "Arm",
     "Clearance",
     "InverseKinematics",
+    "JointStream",
     "Kinematics",
     "Limiter",
     "MAX_DOF",
@@ -21,6 +22,7 @@ __all__: list[str] = [
     "PRESETS",
     "Path",
     "PathFollower",
+    "PoseStream",
     "Posture",
     "Postures",
     "ROBOT_PRESETS",
@@ -654,6 +656,228 @@ class TargetFilter:
         Acceleration of the reference, shape (m,) [m/s^2, rad/s^2].
         """
 
+class _Stream:
+    pass
+
+class JointStream(_Stream):
+    """
+    Computes a smooth reference of postures from chunks of a policy, trajectories or single postures.
+
+    Chunks may be late, early, overlapping, duplicate, out of order, or missing. The reference keeps the range and the bounds
+    on velocity, acceleration and jerk of each joint, joins a chunk in minimum time without overshoot, and rests at the last
+    point of the last chunk.
+
+    Parameters
+    ----------
+    arm : SerialArm or Robot
+        The arm, whose limits apply.
+    q0 : array_like, shape (n,)
+        Start of the reference, at rest [rad, m].
+    limits : JointLimits, optional
+        Other limits. For a Tracker, use accelerations and jerks that are 5 % below the limits of the tracker.
+    dt : float
+        Length of a tick [s].
+    timeout : float
+        Time without a message after which the reference of single postures stops [s].
+    delay : float
+        Time after which the reference passes the postures of push [s]: the period of the stream plus its jitter. With 0, the
+        motion is extrapolated.
+    start : float, optional
+        Time of the first tick on the clock of the stamps [s]. Default: estimated from the stamps.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is out of range.
+    """
+    def __init__(
+        self,
+        arm: Model,
+        q0: numpy.typing.ArrayLike,
+        *,
+        limits: typing.Any = None,
+        dt: typing.SupportsFloat | typing.SupportsIndex = 0.001,
+        timeout: typing.SupportsFloat | typing.SupportsIndex = 0.2,
+        delay: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        start: typing.SupportsFloat | typing.SupportsIndex | None = None,
+    ) -> None: ...
+    def advance(self) -> None:
+        """
+        Advances by one tick; Tracker.tick calls advance.
+        """
+    def push(self, q: numpy.typing.ArrayLike, stamp: typing.SupportsFloat | typing.SupportsIndex | None = None) -> bool:
+        """
+        Adds a point that was observed at a time `stamp` [s] on any clock; default: now.
+
+        The reference passes the point `delay` later, and continues after the newest point at constant velocity until the
+        timeout. Returns False for a rejected point, which has no effect: a number is not finite, or the stamp is not newer than
+        all previous stamps or is from the future. Raises ParameterError for a wrong shape, and for a posture that is outside the
+        range of a joint by more than a tenth of its width; within this tenth, the joint moves to the end of its range.
+        """
+    def push_chunk(
+        self,
+        postures: numpy.typing.ArrayLike,
+        *,
+        period: typing.SupportsFloat | typing.SupportsIndex | None = None,
+        times: numpy.typing.ArrayLike | None = None,
+        stamp: typing.SupportsFloat | typing.SupportsIndex | None = None,
+        first: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        velocities: numpy.typing.ArrayLike | None = None,
+        accelerations: numpy.typing.ArrayLike | None = None,
+    ) -> bool:
+        """
+        Replaces all points from the first point of a chunk on.
+
+        Point k is for the time stamp + first + k period, or stamp + first + times[k] [s]. Points whose time has passed have no
+        effect, so a late chunk is joined where it should be now. velocities and accelerations, one row for each point, are
+        estimated from the points if they are not given. After the last point, the reference rests at this point. Returns False
+        for a rejected chunk, as push. Raises ParameterError for wrong shapes and times.
+        """
+    def reset(self, q: numpy.typing.ArrayLike) -> None:
+        """
+        Restarts at rest, with the same speed; chunks and an estimated clock are discarded.
+        """
+    def set_speed(self, fraction: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        """
+        Reduces the bounds on velocity to a fraction in (0, 1] of the given bounds, until the next call.
+        """
+    @property
+    def age(self) -> float:
+        """
+        Time since the newest stamp [s].
+        """
+    @property
+    def gap(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Displacement from the reference to the target [rad, m].
+        """
+    @property
+    def q(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Reference at the start of the next tick.
+        """
+    @property
+    def qd(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Velocity of the reference.
+        """
+    @property
+    def qdd(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Acceleration of the reference.
+        """
+    @property
+    def speed(self) -> float:
+        """
+        Fraction of the bounds on velocity that set_speed has set.
+        """
+
+class PoseStream(_Stream):
+    """
+    Computes a smooth reference of a pose from chunks of poses or single poses, as JointStream does.
+
+    Parameters
+    ----------
+    x0 : array_like, shape (4, 4)
+        Start of the reference, at rest, in the base frame [m].
+    velocity, acceleration, jerk : float
+        Bounds of each axis of the base frame, [m/s], [m/s^2] and [m/s^3].
+    angular_velocity, angular_acceleration, angular_jerk : float
+        Bounds of the angle about each axis [rad/s], [rad/s^2] and [rad/s^3].
+    dt, timeout, delay, start
+        As for JointStream.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is out of range.
+    """
+    def __init__(
+        self,
+        x0: numpy.typing.ArrayLike,
+        *,
+        velocity: typing.SupportsFloat | typing.SupportsIndex,
+        acceleration: typing.SupportsFloat | typing.SupportsIndex,
+        jerk: typing.SupportsFloat | typing.SupportsIndex,
+        angular_velocity: typing.SupportsFloat | typing.SupportsIndex,
+        angular_acceleration: typing.SupportsFloat | typing.SupportsIndex,
+        angular_jerk: typing.SupportsFloat | typing.SupportsIndex,
+        dt: typing.SupportsFloat | typing.SupportsIndex = 0.001,
+        timeout: typing.SupportsFloat | typing.SupportsIndex = 0.2,
+        delay: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        start: typing.SupportsFloat | typing.SupportsIndex | None = None,
+    ) -> None: ...
+    def advance(self) -> None:
+        """
+        Advances by one tick; Tracker.tick calls advance.
+        """
+    def push(self, x: numpy.typing.ArrayLike, stamp: typing.SupportsFloat | typing.SupportsIndex | None = None) -> bool:
+        """
+        Adds a point that was observed at a time `stamp` [s] on any clock; default: now.
+
+        The reference passes the point `delay` later, and continues after the newest point at constant velocity until the
+        timeout. Returns False for a rejected point, which has no effect: a number is not finite, or the stamp is not newer than
+        all previous stamps or is from the future. Raises ParameterError for a wrong shape, and for a posture that is outside the
+        range of a joint by more than a tenth of its width; within this tenth, the joint moves to the end of its range.
+        """
+    def push_chunk(
+        self,
+        poses: numpy.typing.ArrayLike,
+        *,
+        period: typing.SupportsFloat | typing.SupportsIndex | None = None,
+        times: numpy.typing.ArrayLike | None = None,
+        stamp: typing.SupportsFloat | typing.SupportsIndex | None = None,
+        first: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        velocities: numpy.typing.ArrayLike | None = None,
+        accelerations: numpy.typing.ArrayLike | None = None,
+    ) -> bool:
+        """
+        Replaces all points from the first point of a chunk on.
+
+        Point k is for the time stamp + first + k period, or stamp + first + times[k] [s]. Points whose time has passed have no
+        effect, so a late chunk is joined where it should be now. velocities and accelerations, one row for each point, are
+        estimated from the points if they are not given. After the last point, the reference rests at this point. Returns False
+        for a rejected chunk, as push. Raises ParameterError for wrong shapes and times.
+        """
+    def reset(self, x: numpy.typing.ArrayLike) -> None:
+        """
+        Restarts at rest, with the same speed; chunks and an estimated clock are discarded.
+        """
+    def set_speed(self, fraction: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        """
+        Reduces the bounds on velocity to a fraction in (0, 1] of the given bounds, until the next call.
+        """
+    @property
+    def age(self) -> float:
+        """
+        Time since the newest stamp [s].
+        """
+    @property
+    def gap(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Displacement from the reference to the target [rad, m].
+        """
+    @property
+    def speed(self) -> float:
+        """
+        Fraction of the bounds on velocity that set_speed has set.
+        """
+    @property
+    def x(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Reference at the start of the next tick.
+        """
+    @property
+    def xd(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Velocity of the reference.
+        """
+    @property
+    def xdd(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Acceleration of the reference.
+        """
+
 class Task:
     """
     The compiled part of a task.
@@ -961,11 +1185,17 @@ class Tracker:
         One tick toward the reference of a filter. The filter advances by one tick, also after stop.
         """
     @typing.overload
+    def tick(self, stream: _Stream) -> Tick:
+        """
+        One tick of a stack of one task toward the reference of a stream. The stream advances by one tick.
+        """
+    @typing.overload
     def tick(self, references: dict[str, typing.Any]) -> Tick:
         """
         One tick of a stack toward references: a dictionary by task name.
 
-        Each value is a point x, (x, xd) or (x, xd, xdd), and for positions and poses also a PathFollower or a TargetFilter. x
+        Each value is a point x, (x, xd) or (x, xd, xdd), for positions and poses also a PathFollower or a TargetFilter, and
+        for postures and poses also a JointStream or PoseStream. x
         has shape (3,) for a position, (3, 3) for an orientation, (4, 4) for a pose, (3,) for an axis, (joints,) for a posture
         [m, rad]. A task that is not in the dictionary keeps its last target, at rest; the first target is the start of the
         task.

@@ -59,7 +59,7 @@
 #include "fpbm/simulate/summary.hpp"
 #include "fpbm/simulate/time_grid.hpp"
 #include "fpbm/singular/damping.hpp"
-#include "fpbm/target/streamed_target.hpp"
+#include "fpbm/target/stream.hpp"
 #include "fpbm/target/target_filter.hpp"
 #include "fpbm/task/axis_task.hpp"
 #include "fpbm/task/center_of_mass_task.hpp"

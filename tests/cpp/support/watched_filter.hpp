@@ -8,6 +8,7 @@
 #include <tuple>
 #include <type_traits>
 
+#include "fpbm/target/stream.hpp"
 #include "fpbm/target/target_filter.hpp"
 #include "support/random.hpp"
 
@@ -51,35 +52,37 @@ TargetBounds<Scalar> random_bounds(Random& random) {
 
 /// Advances tick by tick, and checks the bounds on velocity, acceleration and jerk, by the values of the reference and
 /// by the displacement of each tick.
-template <typename Space, typename Scalar>
+template <typename Space, typename Scalar, typename Filter_ = TargetFilter<Space, Scalar>>
 class WatchedFilter {
  public:
-  using Filter = TargetFilter<Space, Scalar>;
+  using Filter = Filter_;
+  using Axes = AxesOf<Space, Scalar>;
 
-  WatchedFilter(const typename Filter::Point& x0, const TargetBounds<Scalar>& bounds,
-                const TargetFilterOptions<Scalar>& options = {})
-      : filter(x0, bounds, options), bounds_(bounds), dt_(options.dt) {}
+  template <typename... Options>
+  WatchedFilter(const typename Filter::Point& x0, const typename Axes::Bounds& bounds, const Options&... options)
+      : filter(x0, bounds, options...), axes_(bounds, filter.dt()), dt_(filter.dt()) {}
 
   void advance() {
     const Reference<Space, Scalar> before = filter.reference();
     filter.advance();
     const Reference<Space, Scalar>& now = filter.reference();
     const auto displacement = Space::template difference<Scalar>(now.x, before.x);
+    // A rotation that joins a stream curves within a tick.
+    constexpr bool kStreams = std::is_same_v<Space, Pose> && !std::is_same_v<Filter, TargetFilter<Space, Scalar>>;
+    constexpr Scalar kCurved = kStreams ? Scalar(3) : Scalar(1.001);
     constexpr Scalar kEpsilon = std::numeric_limits<Scalar>::epsilon();
     for (int i = 0; i < Space::kRows; ++i) {
-      const bool turns = i >= Space::kRows - Space::kTurns;
-      const Scalar V = turns ? bounds_.angular_velocity : bounds_.velocity;
-      const Scalar A = turns ? bounds_.angular_acceleration : bounds_.acceleration;
-      const Scalar J = turns ? bounds_.angular_jerk : bounds_.jerk;
+      const auto [V, stop] = axes_(i);
+      const auto [A, J] = stop;
       ASSERT_LE(std::abs(now.xd(i)), V * (1 + 256 * kEpsilon)) << i;
       ASSERT_LE(std::abs(now.xdd(i)), A * (1 + 64 * kEpsilon)) << i;
       ASSERT_LE(std::abs(now.xdd(i) - before.xdd(i)), J * dt_ * (1 + 64 * kEpsilon) + 64 * kEpsilon * A) << i;
       ASSERT_NEAR(now.xd(i) - before.xd(i), dt_ * (now.xdd(i) + before.xdd(i)) / 2,
-                  J * dt_ * dt_ / 4 * Scalar(1.001) + 64 * kEpsilon * V)
+                  J * dt_ * dt_ / 4 * kCurved + 64 * kEpsilon * V)
           << i;
       const Scalar size = extent(now.x) + extent(before.x);
       ASSERT_NEAR(displacement(i), dt_ * (now.xd(i) + before.xd(i)) / 2,
-                  J * dt_ * dt_ * dt_ / 12 * Scalar(1.001) + 64 * kEpsilon * (size + V))
+                  J * dt_ * dt_ * dt_ / 12 * kCurved + 64 * kEpsilon * (size + V))
           << i;
     }
   }
@@ -107,7 +110,7 @@ class WatchedFilter {
   Filter filter;
 
  private:
-  TargetBounds<Scalar> bounds_;
+  Axes axes_;
   Scalar dt_;
 };
 

@@ -184,7 +184,7 @@ class Tracker {
   void finish_tick(const Desired_& desired, const Rows_& rows, Result& result) noexcept {
     const bool damped = result.status == Status::kDamped;
     const JointVector u = limit(state_, desired, rows, result);
-    JointState next = prove(state_, u, result);
+    JointState next = prove(state_, desired, rows, u, result);
     report_path(state_, desired, rows, next, result);
     account(state_, desired, std::move(next), damped, result);
   }

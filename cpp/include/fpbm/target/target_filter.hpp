@@ -9,9 +9,9 @@
 #include "fpbm/path/detail/rounding_compensation.hpp"
 #include "fpbm/path/reference.hpp"
 #include "fpbm/target/detail/stamp_clock.hpp"
+#include "fpbm/target/detail/streamed_target.hpp"
 #include "fpbm/target/detail/target_axes.hpp"
 #include "fpbm/target/detail/target_bounds.hpp"
-#include "fpbm/target/streamed_target.hpp"
 
 namespace fpbm {
 
@@ -36,7 +36,7 @@ class TargetFilter {
   TargetFilter(const Point& x0, const TargetBounds<Scalar>& bounds, const TargetFilterOptions<Scalar>& options = {})
       : dt_(options.dt),
         timeout_(options.timeout),
-        axes_(bounds),
+        axes_(bounds, options.dt),
         reference_(Reference<Space, Scalar>::hold(orthonormalised(x0))),
         clock_(options.dt, options.timeout, options.start),
         target_(reference_.x, options.dt / Scalar(2), options.timeout, axes_.fastest()) {

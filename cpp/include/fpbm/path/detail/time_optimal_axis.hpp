@@ -55,9 +55,10 @@ struct TimeOptimalAxis {
   ///
   /// Factors of 1e-6 to 1e-2 of J h³, and of 1 to 80 epsilon, pass TargetTurn.* and TargetStream*. With 1e-7 of J h³,
   /// TargetTurn.* fails.
-  [[nodiscard]] Scalar tolerance(const AxisState<Scalar>& state, Scalar size, Scalar h) const noexcept {
+  [[nodiscard]] Scalar tolerance(const AxisState<Scalar>& state, Scalar size, Scalar h,
+                                 Scalar part = Scalar(1e-6)) const noexcept {
     const Scalar round_off = Scalar(8) * std::numeric_limits<Scalar>::epsilon();
-    return std::max(Scalar(1e-6) * stop.jerk * h * h * h, round_off * (size + std::abs(stop.end_position(state))));
+    return std::max(part * stop.jerk * h * h * h, round_off * (size + std::abs(stop.end_position(state))));
   }
 
  private:

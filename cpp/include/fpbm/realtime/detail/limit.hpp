@@ -95,6 +95,7 @@ template <typename TrackerState, typename Desired, typename Rows_>
 template <typename TrackerState, typename Desired, typename Rows_>
 [[nodiscard]] typename TrackerState::JointVector limit(TrackerState& state, const Desired& desired, const Rows_& rows,
                                                        typename TrackerState::Result& result) noexcept {
+  using Scalar = typename TrackerState::Scalar;
   const typename TrackerState::JointVector& u = desired.u;
   if (!state.is_brakable(state.tick.after(u))) result.status = Status::kNotFinite;
   if (state.progress.recovering() && !state.stops() && !failed(result.status)) {
@@ -107,7 +108,7 @@ template <typename TrackerState, typename Desired, typename Rows_>
       if (state.on_path()) {
         const auto box = state.limits().box(state.tick.joints, state.tick.last);
         auto found = u;
-        if (find_motion_on_path(desired, box, rows, state.most_path_fraction, found)) return found;
+        if (find_motion_on_path(desired, box, rows, state.most_path_fraction, Scalar(1), found)) return found;
       }
     }
   }

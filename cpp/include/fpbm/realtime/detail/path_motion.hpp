@@ -40,11 +40,11 @@ void report_path(const TrackerState& state, const Desired& desired, const Rows_&
   }
 }
 
-/// Sets u to the motion on the path with the fraction σ in [0, most] nearest to 1 that the limits and the rows admit.
-/// Returns false without an effect if they admit none. box: of the motions.
+/// Sets u to the motion on the path with the fraction σ in [0, most] nearest to `wanted` that the limits and the rows
+/// admit. Returns false without an effect if they admit none. box: of the motions.
 template <typename Desired, typename Box, int N, int P, typename Scalar>
 [[nodiscard]] bool find_motion_on_path(const Desired& desired, const Box& box, const Rows<N, P, Scalar>& rows,
-                                       Scalar most, Vector<N, Scalar>& u) noexcept {
+                                       Scalar most, Scalar wanted, Vector<N, Scalar>& u) noexcept {
   const auto& still = desired.still;
   const Vector<N, Scalar> change = desired.u - still;
   Scalar low(0);
@@ -69,7 +69,7 @@ template <typename Desired, typename Box, int N, int P, typename Scalar>
     }
   }
   if (!(low <= high)) return false;
-  u = box.nearest(still + std::clamp(Scalar(1), low, high) * change);
+  u = box.nearest(still + std::clamp(wanted, low, high) * change);
   return true;
 }
 

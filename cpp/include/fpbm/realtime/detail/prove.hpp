@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fpbm/core/status.hpp"
+#include "fpbm/realtime/detail/path_motion.hpp"
 #include "fpbm/realtime/detail/tracker_state.hpp"
 
 namespace fpbm {
@@ -32,9 +33,11 @@ template <typename TrackerState>
 
 /// Third step of a tick: the state after a tick with the motion u, if all bounds accept the tick and a stop after the
 /// tick. Otherwise, or if every joint brakes, the tick is the next tick of the planned stop (docs/clearance.md,
-/// Guarantees). With bounds on torque, motions between u and this tick are tried before.
-template <typename TrackerState>
-[[nodiscard]] typename TrackerState::JointState prove(TrackerState& state, const typename TrackerState::JointVector& u,
+/// Guarantees). With bounds on torque, motions between u and this tick are tried before; on a kept path, motions
+/// between u and the slowest motion on the path. rows: TrackerState::rows().
+template <typename TrackerState, typename Desired, typename Rows_>
+[[nodiscard]] typename TrackerState::JointState prove(TrackerState& state, const Desired& desired, const Rows_& rows,
+                                                      const typename TrackerState::JointVector& u,
                                                       typename TrackerState::Result& result) noexcept {
   using Scalar = typename TrackerState::Scalar;
   using JointVector = typename TrackerState::JointVector;
@@ -47,11 +50,17 @@ template <typename TrackerState>
     const JointVector qdd = plan.next(state.limits(), tick.joints, tick.last);
     const JointVector stopping =
         TrackerState::kLevel == Level::kAcceleration ? qdd : JointVector(tick.joints.qd + state.dt() * qdd);
+    JointVector slowest = stopping;
+    [[maybe_unused]] bool on_path = false;
+    if constexpr (Desired::kOnPath) {
+      on_path = state.on_path() && find_motion_on_path(desired, state.limits().box(tick.joints, tick.last), rows,
+                                                       state.most_path_fraction, Scalar(0), slowest);
+    }
     // Without these motions, the accelerations of a Panda with 3 kg jump from tick to tick at the edge of its torques.
     for (Scalar part(0.5); !braking && state.bounds.bounds_torques() && part > Scalar(0.05); part /= Scalar(2)) {
-      next = tick.after(JointVector(stopping + part * (u - stopping)));
+      next = tick.after(JointVector(slowest + part * (u - slowest)));
       if (!accept(state, next)) continue;
-      multiply_scale(result, part);
+      if (!on_path) multiply_scale(result, part);
       result.status = worse(result.status, Status::kSlowed);
       return next;
     }

@@ -7,10 +7,11 @@
 #include "fpbm/path/path_follower.hpp"
 #include "fpbm/path/reference.hpp"
 #include "fpbm/realtime/detail/tick_references.hpp"
+#include "fpbm/target/stream.hpp"
 #include "fpbm/target/target_filter.hpp"
 
-/// Sources of references for a tick: a Reference, which continues at constant acceleration, a PathFollower, or a
-/// TargetFilter.
+/// Sources of references for a tick: a Reference, which continues at constant acceleration, a PathFollower, a
+/// TargetFilter, or a Stream.
 namespace fpbm {
 
 /// The reference after `seconds` [s] of the tick.
@@ -24,7 +25,7 @@ template <typename Source, typename Scalar>
 }
 
 /// Advances a source after a tick of dt [s] at a level. stopping: whether the arm stops. While the arm stops, a
-/// PathFollower waits, and a TargetFilter continues. fraction: Tick::path_fraction, which slows the clock of a kept
+/// PathFollower waits, and a TargetFilter or a Stream continues. fraction: Tick::path_fraction, which slows the clock of a kept
 /// path, also while the arm stops.
 template <typename Space, typename Scalar>
 void advance_source(const Reference<Space, Scalar>&, Scalar, Level, bool, Scalar) noexcept {}
@@ -41,6 +42,11 @@ void advance_source(TargetFilter<Space, Scalar>& source, Scalar, Level, bool, Sc
   source.advance();
 }
 
+template <typename Space, typename Scalar, int kPoints>
+void advance_source(Stream<Space, Scalar, kPoints>& source, Scalar, Level, bool, Scalar) noexcept {
+  source.advance();
+}
+
 /// Sets the speed of a source before a tick, if the speed is not 0.
 template <typename Space, typename Scalar>
 void set_source_speed(const Reference<Space, Scalar>&, Scalar) noexcept {}
@@ -50,6 +56,10 @@ void set_source_speed(PathFollower<Path>& source, Scalar speed) noexcept {
 }
 template <typename Space, typename Scalar>
 void set_source_speed(TargetFilter<Space, Scalar>& source, Scalar speed) noexcept {
+  if (speed != Scalar(0)) source.set_speed(speed);
+}
+template <typename Space, typename Scalar, int kPoints>
+void set_source_speed(Stream<Space, Scalar, kPoints>& source, Scalar speed) noexcept {
   if (speed != Scalar(0)) source.set_speed(speed);
 }
 

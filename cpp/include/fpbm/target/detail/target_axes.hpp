@@ -1,11 +1,15 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <optional>
 
 #include "fpbm/core/types.hpp"
 #include "fpbm/path/detail/fixed_axis.hpp"
 #include "fpbm/path/detail/time_optimal_axis.hpp"
+#include "fpbm/path/reference.hpp"
+#include "fpbm/target/detail/chunk_piece.hpp"
+#include "fpbm/target/detail/joining_axis.hpp"
 #include "fpbm/target/detail/target_bounds.hpp"
 
 namespace fpbm {
@@ -16,6 +20,8 @@ template <typename Space, typename Scalar>
 class TargetAxes {
  public:
   using Axis = TimeOptimalAxis<Scalar>;
+  using Axes = AxesOf<Space, Scalar>;
+  using Moving = Reference<Space, Scalar>;
   using Twist = Vector<Space::kRows, Scalar>;
 
   /// Displacement [m, rad], velocity and acceleration after a time.
@@ -23,7 +29,7 @@ class TargetAxes {
     Twist displacement;
     Twist xd;
     Twist xdd;
-    bool arrived = false;  ///< Whether all axes rest on the target.
+    bool arrived = false;  ///< Whether all axes rest on the target, or move with the target.
 
     void set(int i, const AxisState<Scalar>& axis) noexcept {
       displacement(i) = axis.q;
@@ -33,18 +39,20 @@ class TargetAxes {
   };
 
   /// Throws std::invalid_argument if a bound is not positive and finite.
-  explicit TargetAxes(const TargetBounds<Scalar>& bounds)
-      : lengths_(bounds.lengths()), angles_(Space::kTurns > 0 ? bounds.angles() : bounds.lengths()) {}
+  TargetAxes(const typename Axes::Bounds& bounds, Scalar dt) : axes_(bounds, dt) {}
 
   /// Fraction of the velocity bounds that the motion uses, in (0, 1].
   void set_speed(Scalar fraction) noexcept { speed_ = fraction; }
   [[nodiscard]] Scalar speed() const noexcept { return speed_; }
 
   [[nodiscard]] Axis operator()(int i) const noexcept {
-    Axis axis = i < kLengths ? lengths_ : angles_;
+    Axis axis = axes_(i);
     axis.velocity *= speed_;
     return axis;
   }
+
+  /// Range of coordinate i.
+  [[nodiscard]] Range<Scalar> range(int i) const noexcept { return axes_.range(i); }
 
   [[nodiscard]] Twist fastest() const noexcept {
     Twist result;
@@ -72,6 +80,7 @@ class TargetAxes {
     motion.arrived = true;
     const auto approach_one = [&](int i) noexcept {
       const Scalar v = velocity(i);
+      if (error(i) == Scalar(0) && xd(i) == v && xdd(i) == Scalar(0)) return AxisState<Scalar>{error(i), {}, {}};
       const AxisState<Scalar> state{Scalar(0), xd(i) - v, xdd(i)};
       const Axis axis = (*this)(i);
       const AxisState<Scalar> to = axis.approach(state, error(i), v, seconds, axis.tolerance(state, size, h));
@@ -83,7 +92,7 @@ class TargetAxes {
       const AxisState<Scalar> to = approach_one(i);
       motion.set(i, {to.q + seconds * velocity(i), to.v + velocity(i), to.a});
     }
-    if constexpr (Space::kTurns == 3) {
+    if constexpr (kRotates) {
       if (!fixed) return motion;
       const AxisState<Scalar> to = approach_one(kLengths + static_cast<int>(fixed->largest));
       motion.displacement.template tail<3>() = to.q * fixed->angles;
@@ -93,14 +102,53 @@ class TargetAxes {
     return motion;
   }
 
+  /// Motion after `seconds` [s] that joins a target within the bounds. from: the reference. schedule: the motion of the
+  /// target. now: the time at the start of the tick. rate: of the clock of the schedule.
+  template <typename Schedule>
+  [[nodiscard]] Motion join(const Moving& from, const Twist& error, const Schedule& schedule, Scalar now, Scalar rate,
+                            Scalar size, Scalar seconds, Scalar h) const noexcept {
+    const std::size_t piece = schedule.active(now);
+    const auto moving = [&](Scalar t) noexcept { return schedule.at(piece, now + rate * t); };
+    const Moving start = moving(Scalar(0));
+    const Moving end = moving(h);
+    const Moving then = seconds == h ? end : moving(seconds);
+    const Twist to_end = Space::template difference<Scalar>(end.x, start.x);
+    const Twist to_then = Space::template difference<Scalar>(then.x, start.x);
+    Motion motion;
+    motion.arrived = true;
+    for (int i = 0; i < Space::kRows; ++i) {
+      const auto at = [&](const Moving& state, Scalar q) noexcept {
+        return AxisState<Scalar>{q, rate * state.xd(i), rate * rate * state.xdd(i)};
+      };
+      const MovingAxis<Scalar> target{at(start, Scalar(0)), at(end, to_end(i)), at(then, to_then(i)),
+                                      rate * rate * rate * schedule.largest_jerk(piece, now + h, i)};
+      const AxisState<Scalar> own{Scalar(0), from.xd(i), from.xdd(i)};
+      const Axis axis = (*this)(i);
+      const AxisState<Scalar> relative{Scalar(0), own.v - target.start.v, own.a};
+      Range<Scalar> range = axes_.range(i);
+      if (i < kLengths) {
+        if (!schedule.continues()) range = schedule.range_after(piece, now, start.x, i).within(range);
+        range = range.from(coordinate(from.x, i));
+      }
+      const JoiningAxis<Scalar> joining{axis, range, h, axis.tolerance(relative, size, h, kPart)};
+      bool on_target = false;
+      motion.set(i, joining.after(seconds, own, error(i), target, on_target));
+      motion.arrived = motion.arrived && on_target;
+    }
+    return motion;
+  }
+
  private:
-  static constexpr int kLengths = Space::kRows - Space::kTurns;
+  static constexpr int kLengths = Axes::kLengths;
+  /// TimeOptimalAxis::tolerance() of joints: jerks by differences exceed their bound by less than 1e-9 of the bound.
+  static constexpr Scalar kPart = kIsJointSpace<Space> ? Scalar(1e-10) : Scalar(1e-6);
+  static constexpr bool kRotates = Space::kRows - kLengths == 3;
 
   /// Fixed axis about which an orientation rotates to a target without angular velocity, if possible.
   [[nodiscard]] static std::optional<FixedAxis<Scalar>> turns_about(const Twist& xd, const Twist& xdd,
                                                                     const Twist& error,
                                                                     const Twist& velocity) noexcept {
-    if constexpr (Space::kTurns == 3) {
+    if constexpr (kRotates) {
       if (!velocity.template tail<3>().isZero(Scalar(0))) return {};
       return fixed_axis<Scalar>(error.template tail<3>(), xd.template tail<3>(), xdd.template tail<3>());
     } else {
@@ -108,8 +156,7 @@ class TargetAxes {
     }
   }
 
-  Axis lengths_;
-  Axis angles_;
+  Axes axes_;
   Scalar speed_{1};
 };
 

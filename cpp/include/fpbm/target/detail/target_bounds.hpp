@@ -1,8 +1,14 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <optional>
 
 #include "fpbm/core/detail/validation.hpp"
+#include "fpbm/geometry/detail/joint_space.hpp"
+#include "fpbm/model/joint.hpp"
 #include "fpbm/path/detail/time_optimal_axis.hpp"
 
 namespace fpbm {
@@ -32,6 +38,70 @@ struct TargetBounds {
   }
 };
 
+/// Range of a coordinate.
+template <typename Scalar>
+struct Range {
+  Scalar low = -std::numeric_limits<Scalar>::infinity();
+  Scalar high = std::numeric_limits<Scalar>::infinity();
+
+  void include(Scalar x) noexcept {
+    low = std::min(low, x);
+    high = std::max(high, x);
+  }
+  [[nodiscard]] Scalar nearest(Scalar x) const noexcept { return std::min(std::max(x, low), high); }
+  /// The range, moved into another range.
+  [[nodiscard]] Range within(const Range& other) const noexcept { return {other.nearest(low), other.nearest(high)}; }
+  /// The range relative to x.
+  [[nodiscard]] Range from(Scalar x) const noexcept { return {low - x, high - x}; }
+};
+
+/// Axes of a reference of a tip: TargetBounds.
+template <typename Space, typename Scalar>
+struct AxesOf {
+  using Bounds = TargetBounds<Scalar>;
+  static constexpr int kLengths = Space::kRows - Space::kTurns;
+
+  TimeOptimalAxis<Scalar> lengths;
+  TimeOptimalAxis<Scalar> angles;
+
+  AxesOf(const Bounds& bounds, Scalar)
+      : lengths(bounds.lengths()), angles(Space::kTurns > 0 ? bounds.angles() : bounds.lengths()) {}
+
+  [[nodiscard]] TimeOptimalAxis<Scalar> operator()(int i) const noexcept { return i < kLengths ? lengths : angles; }
+  [[nodiscard]] Range<Scalar> range(int) const noexcept { return {}; }
+};
+
+/// Axes of a reference of joints: JointLimits. A joint without a bound on jerk may change its acceleration by any
+/// amount within a tick.
+template <int M, typename Scalar>
+struct AxesOf<JointSpace<M>, Scalar> {
+  using Bounds = JointLimits<M, Scalar>;
+  static constexpr int kLengths = M;
+
+  std::array<TimeOptimalAxis<Scalar>, static_cast<std::size_t>(M)> each;
+  Bounds limits;
+
+  AxesOf(const Bounds& bounds, Scalar dt) : limits(bounds.complete()) {
+    validation::require_positive("dt", dt);
+    for (int i = 0; i < M; ++i) {
+      const auto finite = [&](const char* name, Scalar bound) {
+        const validation::Argument argument = validation::element(name, i);
+        if (!(bound > Scalar(0) && std::isfinite(bound))) validation::fail(argument, bound, "positive and finite");
+        return bound;
+      };
+      const Scalar acceleration = finite("limits.acceleration", limits.acceleration(i));
+      const Scalar jerk = limits.jerk(i) > Scalar(2) * acceleration / dt ? Scalar(2) * acceleration / dt
+                                                                         : finite("limits.jerk", limits.jerk(i));
+      each[static_cast<std::size_t>(i)] = {finite("limits.velocity", limits.velocity(i)), {acceleration, jerk}};
+    }
+  }
+
+  [[nodiscard]] const TimeOptimalAxis<Scalar>& operator()(int i) const noexcept {
+    return each[static_cast<std::size_t>(i)];
+  }
+  [[nodiscard]] Range<Scalar> range(int i) const noexcept { return {limits.lower(i), limits.upper(i)}; }
+};
+
 template <typename Scalar = double>
 struct TargetFilterOptions {
   Scalar dt = Scalar(1e-3);  ///< Length of a tick [s]. Default: the tick of the Franka Control Interface.
@@ -46,6 +116,18 @@ struct TargetFilterOptions {
     validation::require_positive("dt", dt);
     validation::require_positive("timeout", timeout);
     if (start) validation::require_finite("start", *start);
+  }
+};
+
+template <typename Scalar = double>
+struct StreamOptions : TargetFilterOptions<Scalar> {
+  /// Time after which the reference passes the points of push() [s]. With the period of the stream plus its jitter, the
+  /// motion between the points is smooth. With 0, the target is extrapolated.
+  Scalar delay = Scalar(0);
+
+  void require_good() const {
+    TargetFilterOptions<Scalar>::require_good();
+    validation::require_non_negative("delay", delay);
   }
 };
 

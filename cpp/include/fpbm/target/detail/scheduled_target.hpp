@@ -1,0 +1,200 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "fpbm/path/reference.hpp"
+#include "fpbm/target/detail/chunk_piece.hpp"
+#include "fpbm/target/detail/spline_velocities.hpp"
+#include "fpbm/target/detail/target_bounds.hpp"
+
+namespace fpbm {
+
+/// Target that moves through the points of chunks (ChunkPiece). Velocities that are not given are those of a cubic
+/// spline (set_spline_velocities()). An acceleration that is not given is the mean of the accelerations of the two
+/// polynomials of degree 3 that meet at the point. After its last point, a target is at rest, or continues at constant
+/// velocity. Times are relative to the newest stamp.
+template <typename Space, typename Scalar, int Capacity>
+class ScheduledTarget {
+ public:
+  using Point = typename Space::template Point<Scalar>;
+  using Twist = Vector<Space::kRows, Scalar>;
+  using Moving = Reference<Space, Scalar>;
+  using Timed = TimedPoint<Space, Scalar>;
+  using Piece = ChunkPiece<Space, Scalar>;
+
+  [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
+  void clear() noexcept { size_ = 0; }
+
+  /// Changes the time that counts as zero to a time `seconds` [s] later, and discards the pieces that end before the
+  /// time `now` on the new clock.
+  void shift(Scalar seconds, Scalar now) noexcept {
+    for (std::size_t k = 0; k < size_; ++k) pieces_[k].from -= seconds;
+    std::size_t ended = 0;
+    while (ended + 1 < size_ && pieces_[ended + 1].from <= now) ++ended;
+    // A point stream is extended by means of the last pieces.
+    ended = std::min(ended, size_ > kMemory ? size_ - kMemory : 0);
+    for (std::size_t k = ended; k < size_; ++k) pieces_[k - ended] = pieces_[k];
+    size_ -= ended;
+  }
+
+  /// The target rests at x until the first point of a chunk.
+  void hold(const Point& x) noexcept {
+    const Twist none = zero();
+    pieces_[0] = {std::numeric_limits<Scalar>::lowest(), {x, none, none}, Scalar(0), none, {none, none}};
+    size_ = 1;
+    extended_ = 0;
+  }
+
+  /// Replaces the points from the first of `count` points on, whose times increase. After the last point, the target is
+  /// at rest, unless it was extended point by point: extended: number of these points, at most
+  /// kMemory. usable: changes a point to a point that the target may pass. Returns false without an effect if there is
+  /// not enough memory.
+  template <typename Usable>
+  [[nodiscard]] bool replace(const Timed* points, int count, const Usable& usable, int extended = 0) noexcept {
+    const std::size_t first = before(points[0].time);
+    const std::size_t end = first + static_cast<std::size_t>(count);
+    if (end > pieces_.size()) return false;
+    const Twist none = zero();
+    for (std::size_t k = first; k < end; ++k) {
+      const auto& [time, x, xd, xdd] = points[k - first];
+      pieces_[k] = {time, {usable(x), none, none}, Scalar(0), none, {none, none}};
+      if (k == first) continue;
+      Piece& piece = pieces_[k - 1];
+      piece.h = time - piece.from;
+      piece.d = Space::template difference<Scalar>(pieces_[k].start.x, piece.start.x);
+      piece.joined = k + 1 < end;
+    }
+    if (first > 0) pieces_[first - 1].joined = false;
+    size_ = end;
+    set_spline_velocities<Capacity>(pieces_.data() + first, static_cast<std::size_t>(count));
+    for (std::size_t k = first; k < end; ++k) {
+      const auto& given = points[k - first].xd;
+      if (given) pieces_[k].start.xd = *given;
+      if (k > first) pieces_[k - 1].set_end(pieces_[k].start.xd, none);
+    }
+    for (std::size_t k = first; k < end; ++k) {
+      const auto& given = points[k - first].xdd;
+      pieces_[k].start.xdd = given ? *given : acceleration_at(k, first);
+      if (k > first) pieces_[k - 1].set_end(pieces_[k].start.xd, pieces_[k].start.xdd);
+    }
+    Moving& rest = pieces_[end - 1].start;
+    last_ = rest;
+    if (extended == 0) rest.xd = none;
+    rest.xdd = none;
+    extended_ = extended;
+    return true;
+  }
+
+  /// Adds a point to a target that continues after its last point. The polynomial to the point continues the velocity
+  /// and the acceleration at the last point, and ends with the derivatives of the polynomial of degree 3 through the
+  /// last four points (Newton's form).
+  [[nodiscard]] bool extend(Scalar time, const Point& x) noexcept {
+    const auto same = [](const Point& point) noexcept { return point; };
+    const Twist none = zero();
+    if (extended_ == 0 || !(time > end().from)) {
+      const Timed point{time, x, none, none};
+      return replace(&point, 1, same, 1);
+    }
+    std::array<Scalar, kMemory> h{time - end().from};
+    std::array<Twist, kMemory> q{Twist(Space::template difference<Scalar>(x, end().start.x) / h[0])};
+    const std::size_t count = std::min(kMemory, static_cast<std::size_t>(extended_));
+    for (std::size_t k = 1; k < count; ++k) {
+      const Piece& before = pieces_[size_ - 1 - k];
+      h[k] = before.h;
+      q[k] = before.d / before.h;
+    }
+    Timed points[2] = {{end().from, end().start.x, last_.xd, last_.xdd}, {time, x, q[0], none}};
+    if (count > 1) {
+      const Twist second = (q[0] - q[1]) / (h[0] + h[1]);
+      *points[1].xd += h[0] * second;
+      *points[1].xdd += Scalar(2) * second;
+      if (count > 2) {
+        const Twist third = (second - (q[1] - q[2]) / (h[1] + h[2])) / (h[0] + h[1] + h[2]);
+        *points[1].xd += h[0] * (h[0] + h[1]) * third;
+        *points[1].xdd += Scalar(2) * (h[0] + h[0] + h[1]) * third;
+      }
+    }
+    if (!replace(points, 2, same, std::min(extended_ + 1, static_cast<int>(kMemory)))) return false;
+    if (count > 1) pieces_[size_ - 3].joined = true;
+    return true;
+  }
+
+  /// Index of the piece at a time: the first piece if the time is before all pieces.
+  [[nodiscard]] std::size_t active(Scalar time) const noexcept {
+    std::size_t k = 0;
+    while (k + 1 < size_ && pieces_[k + 1].from <= time) ++k;
+    return k;
+  }
+
+  /// The target at a time [s] at which, or shortly before which, piece k is active. If the points of another chunk
+  /// follow on the piece, the target continues along the piece.
+  [[nodiscard]] Moving at(std::size_t k, Scalar time) const noexcept {
+    while (pieces_[k].joined && pieces_[k + 1].from <= time) ++k;
+    return pieces_[k].at(time - pieces_[k].from);
+  }
+  /// Bound on the magnitude of the jerk of coordinate i until a time at which, or shortly before which, piece k is
+  /// active.
+  [[nodiscard]] Scalar largest_jerk(std::size_t k, Scalar time, Eigen::Index i) const noexcept {
+    Scalar jerk(0);
+    for (;; ++k) {
+      jerk = std::max(jerk, pieces_[k].largest_jerk(i, time - pieces_[k].from));
+      if (!pieces_[k].joined || pieces_[k + 1].from > time) break;
+    }
+    return jerk;
+  }
+
+  /// Whether the target continues after its last point, and the time of this point [s].
+  [[nodiscard]] bool continues() const noexcept { return extended_ > 0; }
+  [[nodiscard]] Scalar end_time() const noexcept { return end().from; }
+
+  /// Range of coordinate i of the points after a time, at which a piece is active, and of the target at this time.
+  [[nodiscard]] Range<Scalar> range_after(std::size_t active_piece, Scalar time, const Point& now,
+                                          Eigen::Index i) const noexcept {
+    Range<Scalar> range{coordinate(now, i), coordinate(now, i)};
+    for (std::size_t k = active_piece; k < size_; ++k) {
+      const Piece& piece = pieces_[k];
+      if (piece.from > time) range.include(coordinate(piece.start.x, i));
+      // The polynomial has its extremum between points where the velocities have different signs. Its distance from the
+      // points is at most 4/27 of the time between the points, times a velocity, without accelerations. 0.2 includes
+      // accelerations.
+      if (!(piece.h > Scalar(0)) || !(piece.start.xd(i) * piece.end.xd(i) < Scalar(0))) continue;
+      const Scalar beyond = Scalar(0.2) * piece.h * std::max(std::abs(piece.end.xd(i)), std::abs(piece.start.xd(i)));
+      const Scalar x0 = coordinate(piece.start.x, i);
+      const Scalar x1 = x0 + piece.d(i);
+      range.include(piece.start.xd(i) > Scalar(0) ? std::max(x0, x1) + beyond : std::min(x0, x1) - beyond);
+    }
+    return range;
+  }
+
+ private:
+  /// Number of polynomials before a new point that determine its derivatives, with the polynomial to the point.
+  static constexpr std::size_t kMemory = 3;
+
+  [[nodiscard]] static Twist zero() noexcept { return filled<Twist>(Space::kRows); }
+  [[nodiscard]] const Piece& end() const noexcept { return pieces_[size_ - 1]; }
+
+  /// Number of pieces that begin before a time.
+  [[nodiscard]] std::size_t before(Scalar time) const noexcept {
+    std::size_t k = 0;
+    while (k < size_ && pieces_[k].from < time) ++k;
+    return k;
+  }
+  /// Acceleration at the start of piece k, from the pieces of a chunk from `first` on.
+  [[nodiscard]] Twist acceleration_at(std::size_t k, std::size_t first) const noexcept {
+    const bool ends = k + 1 == size_;
+    if (k == first) return ends ? zero() : pieces_[k].first();
+    if (ends) return pieces_[k - 1].last();
+    return (pieces_[k - 1].last() + pieces_[k].first()) / Scalar(2);
+  }
+
+  std::array<Piece, static_cast<std::size_t>(Capacity)> pieces_;
+  std::size_t size_ = 0;
+  Moving last_;       ///< Velocity and acceleration at the last point, before the target rests or continues.
+  int extended_ = 0;  ///< Number of points by which the target was extended, at most kMemory.
+};
+
+}  // namespace fpbm
