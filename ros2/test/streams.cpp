@@ -166,7 +166,8 @@ void restarts() {
   robot.tick(1500);
   check(robot.speed() == 0.0 && robot.status().level == DiagnosticStatus::ERROR, "restarts: speed after a fault",
         robot.speed());
-  check(robot.allocated == 0, "restarts: allocations", static_cast<double>(robot.allocated));
+  check(robot.command[0] > 0.5, "restarts: command of joint 1 after a fault, from 1 toward 0 [rad]", robot.command[0]);
+  limits_hold(robot, "restarts");
 }
 
 }  // namespace
