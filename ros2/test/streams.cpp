@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <diagnostic_msgs/msg/diagnostic_array.hpp>
 #include <limits>
 #include <random>
@@ -68,12 +69,14 @@ void chunks() {
   limits_hold(robot, "chunks");
 }
 
-/// A smooth stream is followed without a lag, with the velocities of the message or without.
+/// A smooth stream is followed without a lag, with the velocities of the message or without. Prints the time of
+/// update().
 void smooth() {
   for (const bool moving : {false, true}) {
     StreamRobot robot;
     check(robot.load() && robot.activate(), "smooth chunks: activated", 1);
     double error = 0.0;
+    std::vector<double> times;
     for (int i = 0; i < 3000; ++i) {
       if (i % 100 == 0) {
         JointTrajectory sent = message(1e-3 * i, 50, wave);
@@ -83,8 +86,11 @@ void smooth() {
         robot.hear("~/joint_trajectory", sent);
       }
       robot.tick();
+      times.push_back(robot.seconds_of_call);
       if (i > 500) error = std::max(error, robot.from(wave(1e-3 * (i + 1))));
     }
+    std::sort(times.begin(), times.end());
+    std::printf("     update() [us]: median %.1f, p99.9 %.1f\n", 1e6 * times[1500], 1e6 * times[2997]);
     check(error < 1e-4, "smooth chunks: lag [rad]", error);
     limits_hold(robot, "smooth chunks");
   }
