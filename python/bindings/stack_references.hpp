@@ -17,9 +17,8 @@ class StackReferences {
  public:
   using Space = AnyStack::Space;
   /// A path, a filter or a stream.
-  using Source =
-      std::variant<AnyFollower<Position<3>>*, AnyFollower<Pose>*, TargetFilter<Position<3>>*, TargetFilter<Pose>*,
-                   PyStream*>;
+  using Source = std::variant<AnyFollower<Position<3>>*, AnyFollower<Pose>*, TargetFilter<Position<3>>*,
+                              TargetFilter<Pose>*, PyStream*>;
   using Sources = std::vector<std::pair<const StackTask*, Source>>;
   using Targets = std::vector<std::pair<const StackTask*, StackTarget>>;
 

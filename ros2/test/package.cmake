@@ -11,7 +11,7 @@ foreach(name IN ITEMS controller_interface fpbm hardware_interface pluginlib rcl
     set(${name}_FOUND TRUE)")
   file(MAKE_DIRECTORY ${packages}/installed_${name})
 endforeach()
-foreach(name IN ITEMS diagnostic_msgs geometry_msgs moveit_core moveit_msgs shape_msgs std_msgs)
+foreach(name IN ITEMS diagnostic_msgs geometry_msgs moveit_core moveit_msgs shape_msgs std_msgs trajectory_msgs)
   file(WRITE ${packages}/Find${name}.cmake "set(${name}_FOUND TRUE)")
 endforeach()
 file(WRITE ${packages}/Findgenerate_parameter_library.cmake "

@@ -147,7 +147,8 @@ int main(int count, char** names) {
       {"efforts", efforts},         {"topics", topics},       {"obstacles", obstacles},
       {"parameters", parameters},   {"two_arms", two_arms},   {"grasp", grasp},
       {"task_bounds", task_bounds}, {"tasks", tasks},         {"torque_bounds", torque_bounds},
-      {"update_time", update_time}, {"wording", wording}};
+      {"update_time", update_time}, {"wording", wording},     {"joint_messages", joint_messages},
+      {"streams", streams}};
   for (const auto& [name, test] : tests) {
     const bool named =
         std::any_of(names + 1, names + count, [own = name](const char* given) { return std::strcmp(own, given) == 0; });

@@ -29,6 +29,10 @@ void torque_bounds();
 void task_bounds();
 /// Prints the time of update(), without and with bounds.
 void update_time();
+/// Streams of joint positions: chunks with jumps, single postures, a clearance, locks, and a fault.
+void streams();
+/// Messages and parameters of streams that are rejected.
+void joint_messages();
 /// Two arms side by side, each with a task: poses, twists, invalid messages, activations, and a fault.
 void two_arms();
 /// Two arms with config/two_pandas.yaml: motions and a stop of the tray do not change the grasp.

@@ -67,8 +67,8 @@ using Parameters = rclcpp::node_interfaces::NodeParametersInterface;
 void check_names(const Parameters& parameters, const rclcpp::Logger& logger) {
   constexpr std::array<const char*, 5> kOfRos{"type", "fallback_controllers", "node_options_args", "qos_overrides.",
                                               "async_parameters."};
-  constexpr std::array<const char*, 9> kGroups{"clearance.", "effort.",     "limits.", "scheme.",       "target.",
-                                               "task.",      "task_bound.", "tool.",   "torque_bounds."};
+  constexpr std::array<const char*, 10> kGroups{"clearance.", "effort.", "limits.",     "scheme.", "stream.",
+                                                "target.",    "task.",   "task_bound.", "tool.",   "torque_bounds."};
   const std::vector<std::string> declared = parameters.list_parameters({}, 0).names;
   std::string unknown;
   for (const auto& given : parameters.get_parameter_overrides()) {

@@ -60,7 +60,7 @@ InterfaceConfiguration TargetController::state_interface_configuration() const {
 CallbackReturn TargetController::on_configure(const rclcpp_lifecycle::State&) {
   try {
     read_parameters();
-    topics_.emplace(*get_node(), params_, tasks_, std::move(obstacles_));
+    topics_.emplace(*get_node(), params_, tasks_, std::move(obstacles_), limits_->bounds());
   } catch (const std::exception& error) {
     RCLCPP_ERROR(get_node()->get_logger(), "%s", error.what());
     close();
@@ -95,7 +95,7 @@ CallbackReturn TargetController::on_error(const rclcpp_lifecycle::State&) {
 CallbackReturn TargetController::on_activate(const rclcpp_lifecycle::State&) {
   try {
     start_ = start();
-    take_clearance();
+    (void)take(topics_->exchange().clearance, bounds_.clearance);
     bounds_.require(start_);
     motion_->begin(start_, start_);
   } catch (const std::exception& error) {  // For example, a joint is outside its limits.
@@ -110,6 +110,7 @@ CallbackReturn TargetController::on_activate(const rclcpp_lifecycle::State&) {
     newest_stamp_[k] = 0.0;
     seen_[k] = topics_->exchange().tasks[k].target.get().count;
   }
+  (void)take(topics_->exchange().chunk, chunk_);  // Earlier joint positions are ignored.
   locked_for_ = 0;
   report_ = Report{};
   return CallbackReturn::SUCCESS;
@@ -192,16 +193,8 @@ return_type TargetController::update(const rclcpp::Time& time, const rclcpp::Dur
   return return_type::OK;
 }
 
-void TargetController::take_clearance() noexcept {
-  (void)topics_->exchange().clearance.try_set([this](ClearanceOffer& offer) {
-    if (!offer.is_new) return;
-    std::swap(bounds_.clearance, offer.clearance);
-    offer.is_new = false;
-  });
-}
-
 void TargetController::take_messages() noexcept {
-  take_clearance();
+  (void)take(topics_->exchange().clearance, bounds_.clearance);
   if (const std::optional<double> speed = topics_->exchange().speed.try_get()) {
     motion_->set_speed(*speed);
     report_.speed = *speed;
@@ -210,13 +203,19 @@ void TargetController::take_messages() noexcept {
     const std::optional<Target> target = topics_->exchange().tasks[k].target.try_get();
     if (!target || target->count == seen_[k]) continue;
     seen_[k] = target->count;
-    if (motion_->push(k, *target)) {
-      newest_[k] = *target;
-      if (target->stamp != 0.0) newest_stamp_[k] = target->stamp;
-    } else {
-      ++report_.tasks[k].rejected;
-      report_.tasks[k].ahead = target->stamp > newest_stamp_[k];
-    }
+    const bool accepted = motion_->push(k, *target);
+    if (accepted) newest_[k] = *target;
+    count(k, accepted, target->stamp);
+  }
+  if (take(topics_->exchange().chunk, chunk_)) count(0, motion_->push_chunk(*chunk_), chunk_->stamp);
+}
+
+void TargetController::count(std::size_t task, bool accepted, double stamp) noexcept {
+  if (!accepted) {
+    ++report_.tasks[task].rejected;
+    report_.tasks[task].ahead = stamp > newest_stamp_[task];
+  } else if (stamp != 0.0) {
+    newest_stamp_[task] = stamp;
   }
 }
 

@@ -70,6 +70,7 @@ void require_finite(const target_controller::Params& params) {
       {"target.angular_acceleration", target.angular_acceleration},
       {"target.angular_jerk", target.angular_jerk},
       {"target.timeout", target.timeout},
+      {"stream.delay", params.stream.delay},
       {"clearance.margin", params.clearance.margin},
       {"torque_bounds.fraction", params.torque_bounds.fraction},
       {"torque_bounds.payload.uncertainty", params.torque_bounds.payload.uncertainty}};
@@ -119,16 +120,20 @@ void TargetController::read_parameters() {
   options.recovery = tasks_.size() == 1;
   const bool several = std::any_of(tasks_.begin(), tasks_.end(), [](const auto& task) { return task.level > 0; });
   options.keep_first_level = params_.keep_first_level && several;
-  fpbm::TargetFilterOptions<> filter;
+  fpbm::StreamOptions<> filter;
   filter.dt = dt_;
   filter.timeout = target.timeout;
+  filter.delay = params_.stream.delay;
   const fpbm::TargetBounds<> bounds{target.velocity,         target.acceleration,         target.jerk,
                                     target.angular_velocity, target.angular_acceleration, target.angular_jerk};
   try {
     make_bounds(tree);
     const MotionSettings settings{tree,   motion_tasks(tree), scheme(robot_->dof()), options, *limits_, bounds,
                                   filter, bounds_.view()};
-    motion_ = is_tip() && robot_->dof() >= fpbm::Pose::kRows ? make_tip_motion(settings) : make_stack_motion(settings);
+    const bool is_pose = is_tip() && robot_->dof() >= fpbm::Pose::kRows;
+    motion_ = params_.input == "joints" ? make_joint_motion(settings)
+              : is_pose                 ? make_tip_motion(settings)
+                                        : make_stack_motion(settings);
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(with_names_of_ros(error.what()));
   }

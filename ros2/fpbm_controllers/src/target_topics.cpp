@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <stdexcept>
 #include <utility>
 
 namespace fpbm_controllers {
@@ -69,7 +70,8 @@ void log_events(const Report& report, Exchange& exchange, const rclcpp::Logger& 
 }  // namespace
 
 TargetTopics::TargetTopics(rclcpp_lifecycle::LifecycleNode& node, const target_controller::Params& params,
-                           const std::vector<TaskSettings>& tasks, std::optional<Obstacles> obstacles)
+                           const std::vector<TaskSettings>& tasks, std::optional<Obstacles> obstacles,
+                           const fpbm::JointLimits<Eigen::Dynamic>& limits)
     : exchange_(std::make_shared<Exchange>(tasks.size())) {
   exchange_->obstacles = std::move(obstacles);
   exchange_->arm = params.arm;
@@ -79,10 +81,16 @@ TargetTopics::TargetTopics(rclcpp_lifecycle::LifecycleNode& node, const target_c
     const TaskSettings& task = tasks[k];
     exchange_->names.push_back(task.name);
     exchange_->tasks[k].frame_id = task.reference.empty() ? params.base_frame : task.reference;
-    poses_.push_back(listen<geometry_msgs::msg::PoseStamped>(node, task.topic("target_pose"), k));
-    twists_.push_back(listen<geometry_msgs::msg::TwistStamped>(node, task.topic("target_twist"), k));
     tips.push_back(
         node.create_publisher<geometry_msgs::msg::PoseStamped>(task.topic("tip_pose"), rclcpp::SystemDefaultsQoS()));
+    if (params.input == "joints") continue;
+    poses_.push_back(listen<geometry_msgs::msg::PoseStamped>(node, task.topic("target_pose"), k));
+    twists_.push_back(listen<geometry_msgs::msg::TwistStamped>(node, task.topic("target_twist"), k));
+  }
+  if (params.input == "joints") {
+    exchange_->messages.emplace(params.joints, limits);
+    trajectories_ = listen_to_joints<trajectory_msgs::msg::JointTrajectory>(node, "joint_trajectory");
+    positions_ = listen_to_joints<std_msgs::msg::Float64MultiArray>(node, "joint_positions");
   }
   speed_ = node.create_subscription<std_msgs::msg::Float64>(
       "~/speed", quality(),
@@ -106,7 +114,7 @@ TargetTopics::TargetTopics(rclcpp_lifecycle::LifecycleNode& node, const target_c
             if (std::count(before.begin(), before.end(), text) == 0) RCLCPP_WARN(logger, "%s", text.c_str());
           }
           exchange->scene_warnings = std::move(warnings);
-          exchange->clearance.set(ClearanceOffer{exchange->obstacles->clearance(), true});
+          exchange->clearance.set({exchange->obstacles->clearance(), true});
         });
   }
   using Diagnostics = rclcpp::Publisher<diagnostic_msgs::msg::DiagnosticArray>;
@@ -147,6 +155,20 @@ std::shared_ptr<rclcpp::Subscription<Message>> TargetTopics::listen(rclcpp_lifec
         }
         target->count = ++own.received;
         own.target.set(*target);
+      });
+}
+
+template <typename Message>
+std::shared_ptr<rclcpp::Subscription<Message>> TargetTopics::listen_to_joints(rclcpp_lifecycle::LifecycleNode& node,
+                                                                              const std::string& name) const {
+  return node.create_subscription<Message>(
+      "~/" + name, quality(),
+      [exchange = exchange_, name, logger = node.get_logger(), clock = node.get_clock()](const Message& message) {
+        try {
+          exchange->chunk.set({std::make_shared<JointChunk>(exchange->messages->chunk_of(message)), true});
+        } catch (const std::invalid_argument& error) {
+          RCLCPP_WARN_THROTTLE(logger, *clock, 1000, "%s dropped: %s", name.c_str(), error.what());
+        }
       });
 }
 

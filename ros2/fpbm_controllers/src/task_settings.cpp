@@ -54,6 +54,8 @@ void require(bool good, const std::string& message) {
 
 std::vector<TaskSettings> task_settings(const target_controller::Params& params) {
   if (params.tasks.empty()) return {of_tip(params)};
+  require(params.input == "poses",
+          "tasks: is not empty, but input is 'joints': remove tasks and give tip_frame, or set input to 'poses'");
   require(params.tip_frame.empty(), "tip_frame: is '" + params.tip_frame +
                                         "', but tasks are given: remove tip_frame, and give each task its frame");
   const auto is_zero = [](double x) { return x == 0.0; };

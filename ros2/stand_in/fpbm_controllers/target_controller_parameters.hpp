@@ -19,6 +19,7 @@ struct Params {
   std::string arm;
   std::string base_frame;
   std::string tip_frame;
+  std::string input = "poses";
   std::vector<std::string> tasks = {};
   struct Task {
     struct MapTasks {
@@ -98,6 +99,9 @@ struct Params {
     double angular_jerk = 60.0;
     double timeout = 0.2;
   } target;
+  struct Stream {
+    double delay = 0.0;
+  } stream;
 };
 
 }  // namespace target_controller
@@ -134,6 +138,7 @@ void for_each_parameter(target_controller::Params& p, Visit&& visit) {
   visit("arm", p.arm, any);
   visit("base_frame", p.base_frame, not_empty);
   visit("tip_frame", p.tip_frame, any);
+  visit("input", p.input, [](const std::string& value) { return value == "poses" || value == "joints"; });
   visit("tasks", p.tasks, unique);
   for (const std::string& name : p.tasks) {
     auto& task = p.task.tasks_map[name];
@@ -191,6 +196,7 @@ void for_each_parameter(target_controller::Params& p, Visit&& visit) {
   visit("target.angular_acceleration", p.target.angular_acceleration, above_zero);
   visit("target.angular_jerk", p.target.angular_jerk, above_zero);
   visit("target.timeout", p.target.timeout, above_zero);
+  visit("stream.delay", p.stream.delay, not_negative);
 }
 
 }  // namespace stand_in

@@ -7,6 +7,7 @@
 #include <fpbm/objective/null_space.hpp>
 #include <fpbm/realtime/tick.hpp>
 #include <fpbm/target/target_filter.hpp>
+#include <fpbm_controllers/joint_chunk.hpp>
 #include <fpbm_controllers/motion_bounds.hpp>
 #include <fpbm_controllers/report.hpp>
 #include <fpbm_controllers/target.hpp>
@@ -55,12 +56,12 @@ struct MotionSettings {
   MotionScheme scheme;
   fpbm::TrackerOptions<> options;
   fpbm::Limits<fpbm::Level::kAcceleration, Eigen::Dynamic> limits;
-  fpbm::TargetBounds<> target;  ///< Bounds on each task's reference.
-  fpbm::TargetFilterOptions<> filter;
+  fpbm::TargetBounds<> target;   ///< Bounds on each task's reference.
+  fpbm::StreamOptions<> filter;  ///< The delay is only for streams of joint positions.
   SharedBounds::View bounds;
 };
 
-/// The motion of a robot toward the targets of its tasks, each through a filter.
+/// The motion of a robot toward the targets of its tasks, each through a filter, or along a stream of joint positions.
 ///
 /// Only make_motion() allocates.
 class Motion {
@@ -76,7 +77,9 @@ class Motion {
   /// std::invalid_argument if the posture is beyond a limit.
   virtual void begin(const Joints& q, const Joints& rest) = 0;
   /// Sets a new target of a task. Returns false if the target is rejected because of its stamp.
-  virtual bool push(std::size_t task, const Target& target) noexcept = 0;
+  virtual bool push(std::size_t, const Target&) noexcept { return false; }
+  /// As push(), for joint positions.
+  virtual bool push_chunk(const JointChunk&) noexcept { return false; }
   /// Reduces the bounds of all filters on velocity to a fraction in (0, 1] (TargetFilter::set_speed).
   virtual void set_speed(double fraction) noexcept = 0;
   /// One tick: sets the status, and the scale and the errors of each task.
@@ -99,6 +102,10 @@ class Motion {
 /// Motion of any tasks by a tracker of a stack. Throws std::invalid_argument if a gain is too high for the tick, or if
 /// a task does not fit the robot.
 [[nodiscard]] std::unique_ptr<Motion> make_stack_motion(const MotionSettings& settings);
+
+/// Motion along a stream of joint positions, with the gains of the first task, whose frame is the tip. Throws
+/// std::invalid_argument if a gain is too high for the tick.
+[[nodiscard]] std::unique_ptr<Motion> make_joint_motion(const MotionSettings& settings);
 
 /// Passes a target to the filter of a task. Returns false if the target is rejected because of its stamp.
 template <typename Filter>

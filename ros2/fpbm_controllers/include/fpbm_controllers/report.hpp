@@ -22,7 +22,7 @@ enum class Fault : std::uint8_t { kNone, kFollowing, kUnreadable, kLocked };
 struct TaskReport {
   double scale = 1.0;              ///< Task scale.
   double position_error = 0.0;     ///< Position error relative to the filter's reference [m].
-  double orientation_error = 0.0;  ///< Orientation error [rad].
+  double orientation_error = 0.0;  ///< Orientation error, or the largest error of a joint [rad].
   std::uint64_t rejected = 0;      ///< Targets rejected because of their stamps.
   bool ahead = false;    ///< Whether the last rejected stamp was too far ahead, and not older than earlier stamps.
   fpbm::Transform<> at;  ///< Frame of the task, in the base frame or the reference frame.
@@ -42,6 +42,7 @@ struct Report {
   std::uint64_t early = 0;       ///< Calls that came too soon to be ticks.
   std::uint64_t limited = 0;     ///< Ticks in which a torque was limited to its bound.
   std::size_t limited_joint = 0;
+  std::optional<double> age;  ///< Time since the newest stamp of joint positions [s]; none with target poses.
   rclcpp::Time time = rclcpp::Time();
   std::array<TaskReport, kTasks> tasks;
   fpbm::Vector<Eigen::Dynamic> q;  ///< Commanded posture. No memory is allocated for robots of fpbm.
@@ -143,6 +144,10 @@ struct Report {
   };
   for_each_task([&](const std::string& task, const TaskReport& values) {
     add(task + "scale", std::to_string(values.scale));
+    if (report.age) {
+      add("joint error [rad]", std::to_string(values.orientation_error));
+      return;
+    }
     add(task + "tip position error [m]", std::to_string(values.position_error));
     add(task + "tip orientation error [rad]", std::to_string(values.orientation_error));
   });
@@ -154,6 +159,7 @@ struct Report {
   add("calls that came too soon", std::to_string(report.early));
   add("speed", std::to_string(report.speed));
   add("ticks with a limited torque", std::to_string(report.limited));
+  if (report.age) add("age of the newest stamp [s]", std::to_string(*report.age));
   if (nearest) {
     add("nearest pair", nearest->names);
     add("distance of the nearest pair [m]", std::to_string(nearest->distance));

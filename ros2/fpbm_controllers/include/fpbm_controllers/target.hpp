@@ -19,10 +19,10 @@ struct Target {
   fpbm::Vector<6> twist = fpbm::Vector<6>::Zero();  ///< [m/s, rad/s]
 };
 
-/// Seconds of a stamp.
-template <typename Header>
-[[nodiscard]] double seconds(const Header& header) {
-  return static_cast<double>(header.stamp.sec) + 1e-9 * static_cast<double>(header.stamp.nanosec);
+/// Seconds of a stamp or a duration.
+template <typename Time>
+[[nodiscard]] double seconds(const Time& time) {
+  return static_cast<double>(time.sec) + 1e-9 * static_cast<double>(time.nanosec);
 }
 
 /// None if a number is not finite, or the quaternion's length differs from 1 by more than 0.01.
@@ -42,7 +42,7 @@ template <typename Header>
   const std::optional<fpbm::Transform<>> pose = transform_of(message.pose);
   if (!pose) return std::nullopt;
   Target target;
-  target.stamp = seconds(message.header);
+  target.stamp = seconds(message.header.stamp);
   target.pose = *pose;
   return target;
 }
@@ -52,7 +52,7 @@ template <typename Header>
   const auto& v = message.twist.linear;
   const auto& w = message.twist.angular;
   Target target;
-  target.stamp = seconds(message.header);
+  target.stamp = seconds(message.header.stamp);
   target.moves = true;
   target.twist << v.x, v.y, v.z, w.x, w.y, w.z;
   if (!target.twist.allFinite()) return std::nullopt;

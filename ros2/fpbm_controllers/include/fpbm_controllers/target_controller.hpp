@@ -21,8 +21,8 @@
 
 namespace fpbm_controllers {
 
-/// Moves the tip, or the frames of several tasks, to target poses or at target twists, and keeps the joint limits at
-/// every tick. The targets are messages that arrive at any rate.
+/// Moves the tip, or the frames of several tasks, to target poses or at target twists, or the joints along a stream of
+/// positions, and keeps the joint limits at every tick. The targets are messages that arrive at any rate.
 ///
 /// A tick continues from the last command, never from the measured posture, which is only compared with the command.
 /// With the command interface effort, the drives get the torques of the command (ComputedTorque).
@@ -85,15 +85,14 @@ class TargetController : public controller_interface::ControllerInterface {
   [[nodiscard]] bool has_positions() const noexcept { return params_.command_interfaces[0] == "position"; }
   void close();
 
-  /// Takes the clearance among the newest obstacles.
-  void take_clearance() noexcept;
-
   /// Throws std::runtime_error, which names the joint, if an interface cannot be read or the arm moves.
   [[nodiscard]] Joints start();
 
   /// Whether torques depend on the measured state.
   [[nodiscard]] bool has_feedback() const noexcept { return torque_ && torque_->has_feedback(); }
   void take_messages() noexcept;
+  /// Counts a target with a stamp [s] that was pushed, and rejected or not.
+  void count(std::size_t task, bool accepted, double stamp) noexcept;
   /// Advances the command by the time since the last call, by at most a tick: late calls delay the arm. A tick has the
   /// length for which the limits were made. A call before the end of a tick commands the state of its time in the tick.
   void advance(double period) noexcept;
@@ -129,6 +128,7 @@ class TargetController : public controller_interface::ControllerInterface {
   // Used only by the loop of an active controller.
   SharedBounds bounds_;
   std::unique_ptr<Motion> motion_;
+  std::shared_ptr<JointChunk> chunk_;     ///< The newest joint positions.
   std::optional<ComputedTorque> torque_;  ///< None without the command interface effort.
   Pace pace_;
   Joints start_;  ///< Positions at activation.

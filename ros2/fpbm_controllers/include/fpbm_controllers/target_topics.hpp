@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <diagnostic_msgs/msg/diagnostic_array.hpp>
+#include <fpbm_controllers/joint_messages.hpp>
 #include <fpbm_controllers/obstacles.hpp>
 #include <fpbm_controllers/report.hpp>
 #include <fpbm_controllers/target.hpp>
@@ -17,6 +18,7 @@
 #include <realtime_tools/realtime_thread_safe_box.hpp>
 #include <std_msgs/msg/float64.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace fpbm_controllers {
@@ -30,11 +32,25 @@ struct TargetExchange {
   std::uint64_t received = 0;
 };
 
-/// A clearance for the loop, which swaps its own clearance for a new clearance: only the callbacks allocate and free.
-struct ClearanceOffer {
-  std::shared_ptr<Clearance> clearance;
+/// An object for the loop, which swaps its own object for a new object: only the callbacks allocate and free.
+template <typename T>
+struct Offer {
+  std::shared_ptr<T> object;
   bool is_new = false;
 };
+template <typename T>
+using OfferBox = realtime_tools::RealtimeThreadSafeBox<Offer<T>>;
+
+/// Swaps an object of the loop for a new object. Returns whether there is a new object.
+template <typename T>
+bool take(OfferBox<T>& box, std::shared_ptr<T>& own) noexcept {
+  bool is_new = false;
+  (void)box.try_set([&own, &is_new](Offer<T>& offer) {
+    is_new = std::exchange(offer.is_new, false);
+    if (is_new) std::swap(own, offer.object);
+  });
+  return is_new;
+}
 
 /// Data that the loop and the node's callbacks exchange. The loop never waits for a callback. Each callback shares the
 /// ownership of the data, because the topics may close while a callback runs.
@@ -43,7 +59,8 @@ struct Exchange {
 
   std::vector<TargetExchange> tasks;
   realtime_tools::RealtimeThreadSafeBox<double> speed{1.0};  ///< In (0, 1].
-  realtime_tools::RealtimeThreadSafeBox<ClearanceOffer> clearance;
+  OfferBox<Clearance> clearance;
+  OfferBox<JointChunk> chunk;
   realtime_tools::RealtimeThreadSafeBox<Report> report;
 
   // Used only by the callbacks.
@@ -51,17 +68,19 @@ struct Exchange {
   std::vector<std::string> joints;
   std::vector<std::string> names;           ///< Names of the tasks.
   std::optional<Obstacles> obstacles;       ///< None without a clearance.
+  std::optional<JointMessages> messages;    ///< None with target poses.
   std::vector<std::string> scene_warnings;  ///< Warnings about the last scene, which are not repeated.
   Report logged;                            ///< The last report whose events were logged.
   Report diagnosed;                         ///< The last published report.
 };
 
-/// The controller's topics: three for each task, the speed, the obstacles if there is a clearance, and the diagnostics.
-/// The destructor closes the topics.
+/// The controller's topics: the targets and the tip of each task, or joint positions and the tip, the speed, the
+/// obstacles if there is a clearance, and the diagnostics. The destructor closes the topics.
 class TargetTopics {
  public:
   TargetTopics(rclcpp_lifecycle::LifecycleNode& node, const target_controller::Params& params,
-               const std::vector<TaskSettings>& tasks, std::optional<Obstacles> obstacles);
+               const std::vector<TaskSettings>& tasks, std::optional<Obstacles> obstacles,
+               const fpbm::JointLimits<Eigen::Dynamic>& limits);
 
   [[nodiscard]] Exchange& exchange() noexcept { return *exchange_; }
 
@@ -69,10 +88,15 @@ class TargetTopics {
   template <typename Message>
   [[nodiscard]] std::shared_ptr<rclcpp::Subscription<Message>> listen(rclcpp_lifecycle::LifecycleNode& node,
                                                                       const std::string& topic, std::size_t task) const;
+  template <typename Message>
+  [[nodiscard]] std::shared_ptr<rclcpp::Subscription<Message>> listen_to_joints(rclcpp_lifecycle::LifecycleNode& node,
+                                                                                const std::string& name) const;
 
   std::shared_ptr<Exchange> exchange_;
   std::vector<std::shared_ptr<rclcpp::Subscription<geometry_msgs::msg::PoseStamped>>> poses_;
   std::vector<std::shared_ptr<rclcpp::Subscription<geometry_msgs::msg::TwistStamped>>> twists_;
+  std::shared_ptr<rclcpp::Subscription<trajectory_msgs::msg::JointTrajectory>> trajectories_;
+  std::shared_ptr<rclcpp::Subscription<std_msgs::msg::Float64MultiArray>> positions_;
   std::shared_ptr<rclcpp::Subscription<std_msgs::msg::Float64>> speed_;
   std::shared_ptr<rclcpp::Subscription<moveit_msgs::msg::PlanningScene>> obstacles_;
   std::shared_ptr<rclcpp::TimerBase> tip_timer_;
