@@ -69,6 +69,22 @@ void chunks() {
   limits_hold(robot, "chunks");
 }
 
+/// A posture with a time: the arm moves until this time, and not in minimum time.
+void timed_posture() {
+  StreamRobot robot;
+  check(robot.load() && robot.activate(), "posture with a time: activated", 1);
+  const Posture target = kStart + Posture::Constant(0.2);
+  JointTrajectory sent = message(target);
+  sent.points[0].time_from_start.sec = 1;
+  robot.hear("~/joint_trajectory", sent);
+  robot.tick(500);
+  const double half = robot.from(target);
+  check(0.05 < half && half < 0.15, "posture with a time: distance after half of the time [rad]", half);
+  robot.tick(600);
+  check(robot.from(target) < 1e-4, "posture with a time: distance after the time [rad]", robot.from(target));
+  limits_hold(robot, "posture with a time");
+}
+
 /// A smooth stream is followed without a lag, with the velocities of the message or without. Prints the time of
 /// update().
 void smooth() {
@@ -180,6 +196,7 @@ void restarts() {
 
 void streams() {
   chunks();
+  timed_posture();
   smooth();
   single();
   obstacle();

@@ -71,13 +71,16 @@ Padded JointMessages::posture(const std::string& name, const std::vector<double>
 JointChunk JointMessages::chunk_of(const trajectory_msgs::msg::JointTrajectory& message) const {
   const Order order = order_of(message.joint_names);
   const std::size_t count = message.points.size();
-  require(1 <= count && count <= JointChunk::kPoints, "points: has " + std::to_string(count) +
-                                                          " points: must have 1 to " +
-                                                          std::to_string(JointChunk::kPoints) + ": divide the message");
+  constexpr int kMost = JointChunk::kPoints - 1;
+  require(1 <= count && count <= kMost, "points: has " + std::to_string(count) + " points: must have 1 to " +
+                                            std::to_string(kMost) + ": divide the message");
   JointChunk chunk;
   chunk.stamp = seconds(message.header.stamp);
+  chunk.starts = seconds(message.points.front().time_from_start) > 0.0;
+  if (chunk.starts) chunk.points.push_back({0.0, ranges_.reference().x, {}, {}});
+  std::size_t index = 0;
   for (const auto& given : message.points) {
-    const std::string name = "points[" + std::to_string(chunk.points.size()) + "].";
+    const std::string name = "points[" + std::to_string(index++) + "].";
     JointChunk::Point point{
         seconds(given.time_from_start), posture(name + "positions", given.positions, order), {}, {}};
     require(chunk.points.empty() || point.time > chunk.points.back().time,

@@ -65,7 +65,8 @@ class JointMotion final : public Motion {
     (void)stream_.reset(padded(q));
   }
 
-  bool push_chunk(const JointChunk& chunk) noexcept override {
+  bool push_chunk(JointChunk& chunk) noexcept override {
+    if (chunk.starts) chunk.points[0] = {0.0, stream_.reference().x, stream_.reference().xd, stream_.reference().xdd};
     const auto push = [&](auto... stamp) noexcept {
       return chunk.single ? stream_.push(chunk.points[0].x, stamp...)
                           : stream_.push_chunk(chunk.points.data(), static_cast<int>(chunk.points.size()), stamp...);

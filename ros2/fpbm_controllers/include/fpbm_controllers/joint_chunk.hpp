@@ -10,10 +10,11 @@ namespace fpbm_controllers {
 
 /// A message of joint positions. The unused joints of the points are at zero.
 struct JointChunk {
-  static constexpr int kPoints = 128;  ///< Largest number of points.
+  static constexpr int kPoints = 129;  ///< Largest number of points, with the start.
   using Point = fpbm::TimedPoint<fpbm::JointSpace<fpbm::kMaxDof>>;
 
   std::vector<Point> points;
+  bool starts = false;  ///< Whether the first point is the reference at the arrival, which the loop sets.
   double stamp = 0.0;   ///< Time from which the times of the points are counted [s]; 0: time of arrival.
   bool single = false;  ///< Whether the chunk is one posture without a time.
 };

@@ -79,7 +79,7 @@ class Motion {
   /// Sets a new target of a task. Returns false if the target is rejected because of its stamp.
   virtual bool push(std::size_t, const Target&) noexcept { return false; }
   /// As push(), for joint positions.
-  virtual bool push_chunk(const JointChunk&) noexcept { return false; }
+  virtual bool push_chunk(JointChunk&) noexcept { return false; }
   /// Reduces the bounds of all filters on velocity to a fraction in (0, 1] (TargetFilter::set_speed).
   virtual void set_speed(double fraction) noexcept = 0;
   /// One tick: sets the status, and the scale and the errors of each task.

@@ -120,6 +120,10 @@ class TargetAxes {
       const auto at = [&](const Moving& state, Scalar q) noexcept {
         return AxisState<Scalar>{q, rate * state.xd(i), rate * rate * state.xdd(i)};
       };
+      if (rests(from, i) && rests(start, i) && rests(end, i) && error(i) == Scalar(0) && to_end(i) == Scalar(0)) {
+        motion.set(i, {});  // For example, an unused joint of a stream for any number of joints.
+        continue;
+      }
       const MovingAxis<Scalar> target{at(start, Scalar(0)), at(end, to_end(i)), at(then, to_then(i)),
                                       rate * rate * rate * schedule.largest_jerk(piece, now + h, i)};
       const AxisState<Scalar> own{Scalar(0), from.xd(i), from.xdd(i)};
@@ -143,6 +147,10 @@ class TargetAxes {
   /// TimeOptimalAxis::tolerance() of joints: jerks by differences exceed their bound by less than 1e-9 of the bound.
   static constexpr Scalar kPart = kIsJointSpace<Space> ? Scalar(1e-10) : Scalar(1e-6);
   static constexpr bool kRotates = Space::kRows - kLengths == 3;
+
+  [[nodiscard]] static bool rests(const Moving& motion, int i) noexcept {
+    return motion.xd(i) == Scalar(0) && motion.xdd(i) == Scalar(0);
+  }
 
   /// Fixed axis about which an orientation rotates to a target without angular velocity, if possible.
   [[nodiscard]] static std::optional<FixedAxis<Scalar>> turns_about(const Twist& xd, const Twist& xdd,
