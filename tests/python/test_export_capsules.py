@@ -7,6 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+
+pytest.importorskip("click")
+pytest.importorskip("matplotlib")
 from click.testing import CliRunner, Result
 
 import fpbm_cpp as fp

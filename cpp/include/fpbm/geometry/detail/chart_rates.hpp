@@ -23,14 +23,14 @@ class RotationRates {
     Scalar power(1);  // (−θ²)^k/(2k + 2)!, and so on.
     Scalar factorial = Scalar(0.5);
     for (int k = 0; k < 14; ++k) {
-      const Scalar n = static_cast<Scalar>(2 * k + 2);
+      const auto n = static_cast<Scalar>(2 * k + 2);
       const Scalar odd = factorial / (n + Scalar(1));
       a_ += power * factorial;
       b_ += power * odd;
       const Scalar next = factorial / ((n + Scalar(1)) * (n + Scalar(2)));
       const Scalar next_odd = odd / ((n + Scalar(2)) * (n + Scalar(3)));
-      a_rate_ -= static_cast<Scalar>(2 * k + 2) * power * next;
-      b_rate_ -= static_cast<Scalar>(2 * k + 2) * power * next_odd;
+      a_rate_ -= n * power * next;
+      b_rate_ -= n * power * next_odd;
       excess_ -= Scalar(2) * power * next;
       power *= -z;
       factorial = next;
