@@ -257,7 +257,7 @@ for a rejected chunk, as push. Raises ParameterError for wrong shapes and times.
 void bind_stream(py::module_& m) {
   const auto none = py::none();
   const StreamOptions<> options;
-  py::class_<PyStream>(m, "_Stream");
+  py::class_<PyStream>(m, "Stream", "A stream of points: JointStream or PoseStream.");
   auto joints = py::class_<PostureStream, PyStream>(
       m, "JointStream",
       R"(Computes a smooth reference of postures from chunks of a policy, trajectories or single postures.

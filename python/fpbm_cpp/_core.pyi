@@ -33,6 +33,7 @@ __all__: list[str] = [
     "Shape",
     "Status",
     "Stop",
+    "Stream",
     "TIME_LAWS",
     "TargetFilter",
     "Task",
@@ -656,10 +657,12 @@ class TargetFilter:
         Acceleration of the reference, shape (m,) [m/s^2, rad/s^2].
         """
 
-class _Stream:
-    pass
+class Stream:
+    """
+    A stream of points: JointStream or PoseStream.
+    """
 
-class JointStream(_Stream):
+class JointStream(Stream):
     """
     Computes a smooth reference of postures from chunks of a policy, trajectories or single postures.
 
@@ -772,7 +775,7 @@ class JointStream(_Stream):
         Fraction of the bounds on velocity that set_speed has set.
         """
 
-class PoseStream(_Stream):
+class PoseStream(Stream):
     """
     Computes a smooth reference of a pose from chunks of poses or single poses, as JointStream does.
 
@@ -1185,7 +1188,7 @@ class Tracker:
         One tick toward the reference of a filter. The filter advances by one tick, also after stop.
         """
     @typing.overload
-    def tick(self, stream: _Stream) -> Tick:
+    def tick(self, stream: Stream) -> Tick:
         """
         One tick of a stack of one task toward the reference of a stream. The stream advances by one tick.
         """
