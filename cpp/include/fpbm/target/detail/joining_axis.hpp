@@ -40,8 +40,8 @@ struct JoiningAxis {
     const TimeOptimalAxis<Scalar> spare = spare_axis(target);
     const bool may_join = spare.stop.acceleration > Scalar(0) && spare.stop.jerk > Scalar(0) &&
                           std::abs(from.a - target.start.a) <= spare.stop.acceleration;
+    const Scalar v = std::min(std::max(target.start.v, -axis.velocity), axis.velocity);
     const auto joined = [&](Scalar t, const AxisState<Scalar>& moved) noexcept {
-      const Scalar v = std::min(std::max(target.start.v, -axis.velocity), axis.velocity);
       const AxisState<Scalar> left{Scalar(0), from.v - target.start.v, from.a - target.start.a};
       const AxisState<Scalar> to = spare.approach(left, error, v, t, tolerance);
       on_target = to.q == error && to.v == Scalar(0) && to.a == Scalar(0);
@@ -58,7 +58,6 @@ struct JoiningAxis {
       if (keeps_bounds(from, end) && stays(end)) return seconds == tick ? end : joined(seconds, target.then);
     }
     on_target = false;
-    const Scalar v = std::min(std::max(target.start.v, -axis.velocity), axis.velocity);
     const auto chasing = [&](Scalar t) noexcept {
       const AxisState<Scalar> to = axis.approach({Scalar(0), from.v - v, from.a}, error, v, t, tolerance);
       return AxisState<Scalar>{to.q + t * v, to.v + v, to.a};
