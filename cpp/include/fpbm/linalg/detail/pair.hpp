@@ -45,18 +45,10 @@ class Pair {
   [[nodiscard]] Scalar first() const noexcept { return both_[0]; }
   [[nodiscard]] Scalar second() const noexcept { return both_[1]; }
 
-  [[gnu::always_inline]] friend Pair operator+(const Pair& x, const Pair& y) noexcept {
-    return Pair(x.both_ + y.both_, kAll);
-  }
-  [[gnu::always_inline]] friend Pair operator-(const Pair& x, const Pair& y) noexcept {
-    return Pair(x.both_ - y.both_, kAll);
-  }
-  [[gnu::always_inline]] friend Pair operator*(const Pair& x, const Pair& y) noexcept {
-    return Pair(x.both_ * y.both_, kAll);
-  }
-  [[gnu::always_inline]] friend Pair operator/(const Pair& x, const Pair& y) noexcept {
-    return Pair(x.both_ / y.both_, kAll);
-  }
+  friend Pair operator+(const Pair& x, const Pair& y) noexcept { return Pair(x.both_ + y.both_, kAll); }
+  friend Pair operator-(const Pair& x, const Pair& y) noexcept { return Pair(x.both_ - y.both_, kAll); }
+  friend Pair operator*(const Pair& x, const Pair& y) noexcept { return Pair(x.both_ * y.both_, kAll); }
+  friend Pair operator/(const Pair& x, const Pair& y) noexcept { return Pair(x.both_ / y.both_, kAll); }
   Pair& operator+=(const Pair& y) noexcept { return *this = *this + y; }
   Pair& operator-=(const Pair& y) noexcept { return *this = *this - y; }
   Pair& operator*=(const Pair& y) noexcept { return *this = *this * y; }
