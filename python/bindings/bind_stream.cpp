@@ -131,7 +131,7 @@ class StreamOf : public PyStream {
         for (int i = 0; i < size; ++i) {
           alone(i) = q(i);
           if (any_.is_usable(alone)) continue;
-          const auto& [low, high] = ranges_at(i);
+          const auto [low, high] = any_.range(i);
           validation::fail(validation::element(name(), i), q(i), "within the range of ",
                            names_[static_cast<std::size_t>(i)], ", ", low, " to ", high,
                            ": are the units radians and metres, and the order of the joints correct?");
@@ -152,11 +152,6 @@ class StreamOf : public PyStream {
     }
     return point_of(array.data(), [name] { return validation::Argument(name); });
   }
-  [[nodiscard]] std::pair<double, double> ranges_at(int i) const {
-    const auto range = any_.range(i);
-    return {range.low, range.high};
-  }
-
   Any any_;
   std::vector<std::string> names_;
   std::vector<TimedPoint<Space>> chunk_;

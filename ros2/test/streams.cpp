@@ -112,7 +112,7 @@ void smooth() {
   }
 }
 
-/// Single postures at 50 Hz, up to 10 ms late, that end in motion.
+/// Single postures at 50 Hz that end in motion.
 void single() {
   StreamRobot robot(0.0, 0.04);
   check(robot.load() && robot.activate(), "single postures: activated", 1);

@@ -144,7 +144,8 @@ class TargetAxes {
 
  private:
   static constexpr int kLengths = Axes::kLengths;
-  /// TimeOptimalAxis::tolerance() of joints: jerks by differences exceed their bound by less than 1e-9 of the bound.
+  /// `part` of TimeOptimalAxis::tolerance(). Jerks of joints by differences then exceed their bound by at most 3e-9 of
+  /// the bound, apart from the rounding of the positions (`make streams`); with 1e-6, by 3e-6.
   static constexpr Scalar kPart = kIsJointSpace<Space> ? Scalar(1e-10) : Scalar(1e-6);
   static constexpr bool kRotates = Space::kRows - kLengths == 3;
 
