@@ -70,8 +70,10 @@ class ScheduledTarget {
     }
     if (first > 0) pieces_[first - 1].joined = false;
     size_ = end;
-    set_spline_velocities<Capacity>(pieces_.data() + first, static_cast<std::size_t>(count));
-    if (moves && count > 2) continue_velocity(pieces_.data() + first, before_chunk);
+    Piece* const chunk = pieces_.data() + first;
+    set_spline_velocities<Capacity>(chunk, static_cast<std::size_t>(count), [&](Twist& xd) noexcept {
+      if (moves) continue_velocity(chunk, before_chunk, xd);
+    });
     for (std::size_t k = first; k < end; ++k) {
       const auto& given = points[k - first].xd;
       if (given) pieces_[k].start.xd = *given;

@@ -92,7 +92,14 @@ struct AxesOf<JointSpace<M>, Scalar> {
       const Scalar acceleration = finite("limits.acceleration", limits.acceleration(i));
       const Scalar jerk = limits.jerk(i) > Scalar(2) * acceleration / dt ? Scalar(2) * acceleration / dt
                                                                          : finite("limits.jerk", limits.jerk(i));
-      each[static_cast<std::size_t>(i)] = {finite("limits.velocity", limits.velocity(i)), {acceleration, jerk}};
+      // The differences of rounded positions are reserved: 8 halves of an ulp in a third difference, and two snaps to a
+      // target (TimeOptimalAxis::tolerance()), each of at most 16 ulp.
+      const Scalar widest = std::max(std::abs(limits.lower(i)), std::abs(limits.upper(i)));
+      const Scalar rounding =
+          Scalar(36) * std::numeric_limits<Scalar>::epsilon() * (std::isfinite(widest) ? widest : Scalar(1));
+      each[static_cast<std::size_t>(i)] = {
+          finite("limits.velocity", limits.velocity(i)),
+          {reduced(acceleration, rounding / (dt * dt)), reduced(jerk, rounding / (dt * dt * dt))}};
     }
   }
 
@@ -100,6 +107,13 @@ struct AxesOf<JointSpace<M>, Scalar> {
     return each[static_cast<std::size_t>(i)];
   }
   [[nodiscard]] Range<Scalar> range(int i) const noexcept { return {limits.lower(i), limits.upper(i)}; }
+
+ private:
+  /// A bound minus a reserve, which may be at most a part of the bound: in single precision, the rounding is larger
+  /// than the bounds on jerk of arms.
+  [[nodiscard]] static Scalar reduced(Scalar bound, Scalar reserve) noexcept {
+    return bound - std::min(reserve, bound / Scalar(1000));
+  }
 };
 
 template <typename Scalar = double>
