@@ -3,7 +3,8 @@
     python bench/streams.py [--chunks 20000] [--guarded 500] [--hours 1] [--workers 2]
 
 1. Hostile streams of a policy (re-anchoring, stalls, reordered, not finite, doubled and wrong chunks) on presets:
-   excess over the bounds by differences of successive postures, and with a clearance, the smallest distance.
+   excess over the bounds by differences of successive postures, and with a clearance, the smallest distance, and
+   contacts of the meshes by Coal (`pip install pin coal`).
 2. Time to rejoin a stream after a jump or a stall, relative to Ruckig (`pip install ruckig`) from the same state to the
    same moving target.
 3. Delay and ripple of steady streams.
@@ -58,16 +59,13 @@ def print_rides(title: str, rides: Sequence[Any]) -> None:
             [
                 name,
                 *map(total, ("received", "accepted", "raised", "ticks")),
-                *map(most, ("position", "velocity", "acceleration", "jerk", "exact_jerk")),
-                f"{nearest:.1e}" if np.isfinite(nearest) else "",
+                *map(most, ("position", "velocity", "acceleration", "jerk")),
+                *([f"{nearest:.1e}", total("contacts")] if np.isfinite(nearest) else []),
             ]
         )
     headings = ["robot", "chunks", "accepted", "errors", "ticks", "excess of position", "velocity"]
-    print_table(
-        title,
-        [*headings, "acceleration", "jerk", "jerk without rounding", "smallest distance beyond the margin [m]"],
-        rows,
-    )
+    headings += ["acceleration", "jerk", "smallest distance beyond the margin [m]", "contacts by Coal"]
+    print_table(title, headings[: len(rows[0])], rows)
 
 
 def print_rejoins(rejoins: Sequence[Any]) -> None:

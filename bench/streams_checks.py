@@ -17,13 +17,12 @@ KINDS = ("position", "velocity", "acceleration", "jerk")
 class Differences:
     """Largest excess over each bound, by differences of successive postures, relative to the bound.
 
-    Positions are relative to the range of the joint. The first posture is at rest. A posture is rounded to a double, so
-    that third differences in short ticks are off by up to eight halves of an ulp: "exact jerk" is without this part.
+    Positions are relative to the range of the joint. The first posture is at rest.
     """
 
     def __init__(self, q0: Array, limits: fp.JointLimits, dt: float) -> None:
         self.last, self.limits, self.dt = np.tile(q0, (3, 1)), limits, dt
-        self.excess = dict.fromkeys((*KINDS, "exact jerk"), -1.0)
+        self.excess = dict.fromkeys(KINDS, -1.0)
 
     def add(self, q: Array) -> None:
         q = np.vstack([self.last, q])
@@ -36,9 +35,6 @@ class Differences:
         for order, name in enumerate(KINDS[1:], 1):
             bound = getattr(limits, name)
             found[name] = float(np.max(np.abs(np.diff(q, order, axis=0)) / self.dt**order / bound)) - 1.0
-        rounding = 4.0 * np.spacing(np.max(np.abs(q), axis=0)) / self.dt**3 / limits.jerk
-        jerk = np.abs(np.diff(q, 3, axis=0)) / self.dt**3 / limits.jerk
-        found["exact jerk"] = float(np.max(jerk - rounding)) - 1.0
         self.excess = {name: max(found[name], each) for name, each in self.excess.items()}
 
 

@@ -16,12 +16,13 @@ import fpbm_cpp as fp
 DT = 1e-3
 REJOINED = 1e-6  # Distance from the stream [rad].
 PERIOD = 1 / 30  # Time between the postures of a chunk to rejoin [s].
-# Steady streams, and the option delay in periods.
+JITTER = 5e-3  # Added to a period, for the option delay [s].
+# Steady streams, and whether the option delay is a period.
 KINDS = {
-    "chunks": (steady, 0.0),
-    "chunks with velocities": (partial(steady, velocities=True), 0.0),
-    "postures": (postures, 0.0),
-    "postures, delay of a period": (postures, 1.0),
+    "chunks": (steady, False),
+    "chunks with velocities": (partial(steady, velocities=True), False),
+    "postures": (postures, False),
+    "postures, delay of a period and 5 ms": (postures, True),
 }
 
 
@@ -91,14 +92,14 @@ def quality(seed: int, rate: float, kind: str, number: int) -> Quality:
     rng = np.random.default_rng([seed, number, 7])
     made = machine("panda")
     task = Task(made.limits, made.home, rng)
-    source, delay = KINDS[kind]
+    source, delayed = KINDS[kind]
     shield = Shield(
         made.arm,
         made.home,
         source(task, 1 / rate),
         limits=made.limits,
         dt=DT,
-        delay=delay / rate,
+        delay=1 / rate + JITTER if delayed else 0.0,
         timeout=max(0.2, 3 / rate),
     )
     q = shield.block(20_000)[2000:]

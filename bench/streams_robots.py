@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from clearance_robots import Check, robot
 from streams_checks import KINDS, Differences, Libfranka
 from streams_shield import Shield
 from streams_sources import Array, Task, hostile
@@ -14,8 +16,11 @@ import fpbm_cpp as fp
 from fpbm_cpp.job.motion import READY
 
 NAMES = ("panda", "fr3", "ur5e", "openarm", "so101")
+GUARDED = ("panda", "iiwa14")
 TICKS = (1e-3, 2e-3, 4e-3)
+BLENDS = (0.0, 0.1)  # Option of a stream [s].
 BLOCK = 10_000  # Ticks between two checks.
+BETWEEN = 0.02  # Time between two checks of meshes [s].
 HOME = {"openarm": [0.3, 0.3, 0.0, 1.0, 0.0, 0.0, 0.0]}  # [rad]
 
 
@@ -34,6 +39,22 @@ def machine(name: str) -> Machine:
     return Machine(arm, limits, np.array(HOME.get(name) or READY[name]))
 
 
+class Scene(NamedTuple):
+    machine: Machine
+    clearance: fp.Clearance
+    meshes: Check
+
+
+@functools.cache
+def scene(name: str) -> Scene:
+    """A robot from its URDF file, at a table with a post."""
+    made = robot(name)
+    table = fp.HalfSpace([0, 0, 1], 0.0, name="table")
+    post = fp.Capsule(0, [0.45, 0.4, 0.0], [0.45, 0.4, 0.9], 0.05, name="post")
+    clearance = replace(made.clearance, obstacles=[table, post])
+    return Scene(Machine(made.arm, made.limits, np.array(READY[name])), clearance, made.meshes.among([table, post]))
+
+
 class Ride(NamedTuple):
     """A motion with a hostile stream. The excesses are relative to the bounds."""
 
@@ -46,34 +67,31 @@ class Ride(NamedTuple):
     velocity: float
     acceleration: float
     jerk: float
-    exact_jerk: float  # The same without the rounding of the postures.
     distance: float  # Smallest distance of a pair beyond the margin [m]; infinity without a clearance.
+    contacts: int  # Postures in which meshes are in contact, by Coal.
 
 
 def ride(seed: int, count: int, guarded: bool, number: int) -> Ride:
     """The motion with a number, until a number of chunks has arrived."""
     rng = np.random.default_rng([seed, number])
-    names = ("panda", "fr3") if guarded else NAMES  # Presets with capsules.
+    names = GUARDED if guarded else NAMES
     name = names[number % len(names)]
-    made, dt = machine(name), float(rng.choice(TICKS))
-    bounds: tuple[Any, ...] = ()
-    if guarded:
-        bounds = (fp.Clearance.preset(name, obstacles=[fp.HalfSpace([0, 0, 1], 0.0, name="table")]),)
+    dt, blend = float(rng.choice(TICKS)), float(rng.choice(BLENDS))
+    made, bounds = (scene(name).machine, [scene(name).clearance]) if guarded else (machine(name), [])
     task = Task(made.limits, made.home, rng, fraction=rng.uniform(0.1, 1.0))
     messages = hostile(task, rng, made.limits)
-    shield = Shield(made.arm, made.home, messages, limits=made.limits, dt=dt, tracked=guarded, bounds=bounds)
-    check = Differences(made.home, made.limits, dt)
-    while shield.received < count:
-        check.add(shield.block(BLOCK))
-    return Ride(
-        name,
-        shield.ticks,
-        shield.received,
-        shield.accepted,
-        shield.raised,
-        *(check.excess[kind] for kind in (*KINDS, "exact jerk")),
-        shield.distance - bounds[0].margin if guarded else np.inf,
+    shield = Shield(
+        made.arm, made.home, messages, limits=made.limits, dt=dt, tracked=guarded, bounds=bounds, blend=blend
     )
+    check, contacts = Differences(made.home, made.limits, dt), 0
+    while shield.received < count:
+        q = shield.block(BLOCK)
+        check.add(q)
+        if guarded:
+            contacts += sum(scene(name).meshes.meets(each) for each in q[:: round(BETWEEN / dt)])
+    excess = (check.excess[kind] for kind in KINDS)
+    beyond = shield.distance - bounds[0].margin if guarded else np.inf
+    return Ride(name, shield.ticks, shield.received, shield.accepted, shield.raised, *excess, beyond, contacts)
 
 
 class Hours(NamedTuple):

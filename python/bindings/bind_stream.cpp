@@ -160,17 +160,18 @@ class StreamOf : public PyStream {
 using PostureStream = StreamOf<JointSpace<kMaxDof>>;
 using PoseStream = StreamOf<Pose>;
 
-StreamOptions<> options_of(double dt, double timeout, double delay, Number start) {
+StreamOptions<> options_of(double dt, double timeout, double delay, double blend, Number start) {
   StreamOptions<> options;
   options.dt = dt;
   options.timeout = timeout;
   options.delay = delay;
+  options.blend = blend;
   options.start = start;
   return options;
 }
 
 std::unique_ptr<PostureStream> joint_stream(const Model& arm, const ArrayLike& q0, const py::object& limits, double dt,
-                                            double timeout, double delay, Number start) {
+                                            double timeout, double delay, double blend, Number start) {
   const JointLimits<kDynamic> own = limits_of(arm, limits).complete();
   const int n = arm.dof();
   const Vector<kDynamic> q = joint_vector(q0, "q0", n);
@@ -185,16 +186,16 @@ std::unique_ptr<PostureStream> joint_stream(const Model& arm, const ArrayLike& q
   }
   Vector<kMaxDof> x0 = Vector<kMaxDof>::Zero();
   x0.head(n) = q;
-  return std::make_unique<PostureStream>(PostureStream::Any(x0, all, options_of(dt, timeout, delay, start)), n,
+  return std::make_unique<PostureStream>(PostureStream::Any(x0, all, options_of(dt, timeout, delay, blend, start)), n,
                                          arm.joint_names);
 }
 
 std::unique_ptr<PoseStream> pose_stream(const ArrayLike& x0, double velocity, double acceleration, double jerk,
                                         double angular_velocity, double angular_acceleration, double angular_jerk,
-                                        double dt, double timeout, double delay, Number start) {
+                                        double dt, double timeout, double delay, double blend, Number start) {
   const TargetBounds<> bounds{velocity, acceleration, jerk, angular_velocity, angular_acceleration, angular_jerk};
   return std::make_unique<PoseStream>(
-      PoseStream::Any(transform(x0, "x0"), bounds, options_of(dt, timeout, delay, start)), 6);
+      PoseStream::Any(transform(x0, "x0"), bounds, options_of(dt, timeout, delay, blend, start)), 6);
 }
 
 template <typename Bound, typename Class>
@@ -276,6 +277,9 @@ timeout : float
 delay : float
     Time after which the reference passes the postures of push [s]: the period of the stream plus its jitter. With 0, the
     motion is extrapolated.
+blend : float
+    Time in which the target changes from a chunk to the next [s]: gentle corrections for noisy policies. With 0, a chunk
+    that does not continue the chunk before is joined in minimum time.
 start : float, optional
     Time of the first tick on the clock of the stamps [s]. Default: estimated from the stamps.
 
@@ -285,7 +289,7 @@ ParameterError
     If an argument is out of range.)");
   joints.def(py::init(&joint_stream), py::arg("arm"), py::arg("q0"), py::kw_only(), py::arg("limits") = none,
              py::arg("dt") = options.dt, py::arg("timeout") = options.timeout, py::arg("delay") = options.delay,
-             py::arg("start") = none);
+             py::arg("blend") = options.blend, py::arg("start") = none);
   bind_stream_of<PostureStream>(joints, "postures");
   auto poses = py::class_<PoseStream, PyStream>(
       m, "PoseStream",
@@ -299,7 +303,7 @@ velocity, acceleration, jerk : float
     Bounds of each axis of the base frame, [m/s], [m/s^2] and [m/s^3].
 angular_velocity, angular_acceleration, angular_jerk : float
     Bounds of the angle about each axis [rad/s], [rad/s^2] and [rad/s^3].
-dt, timeout, delay, start
+dt, timeout, delay, blend, start
     As for JointStream.
 
 Raises
@@ -309,7 +313,7 @@ ParameterError
   poses.def(py::init(&pose_stream), py::arg("x0"), py::kw_only(), py::arg("velocity"), py::arg("acceleration"),
             py::arg("jerk"), py::arg("angular_velocity"), py::arg("angular_acceleration"), py::arg("angular_jerk"),
             py::arg("dt") = options.dt, py::arg("timeout") = options.timeout, py::arg("delay") = options.delay,
-            py::arg("start") = none);
+            py::arg("blend") = options.blend, py::arg("start") = none);
   bind_stream_of<PoseStream>(poses, "poses");
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -61,10 +62,12 @@ Chunk<Space, Scalar> random_chunk(Random& random, const typename Space::template
   const auto count = static_cast<int>(random.uniform(1.0, 60.0));
   for (int k = 0; k < count; ++k) {
     chunk.push_back({time, x, {}, {}});
-    if (random.uniform(0.0, 1.0) < 0.1)
-      chunk.back().xd = random.uniform(Space::kRows, -1.0, 1.0).template cast<Scalar>();
-    if (random.uniform(0.0, 1.0) < 0.1)
-      chunk.back().xdd = random.uniform(Space::kRows, -5.0, 5.0).template cast<Scalar>();
+    const auto rates = [&](double most) {
+      const double wild = random.uniform(0.0, 1.0) < 0.01 ? std::pow(10.0, random.uniform(0.0, 30.0)) : 1.0;
+      return Vector<Space::kRows, Scalar>((wild * random.uniform(Space::kRows, -most, most)).template cast<Scalar>());
+    };
+    if (random.uniform(0.0, 1.0) < 0.1) chunk.back().xd = rates(1.0);
+    if (random.uniform(0.0, 1.0) < 0.1) chunk.back().xdd = rates(5.0);
     time += even ? period : static_cast<Scalar>(random.uniform(0.001, 0.1));
     step += (random.uniform(Space::kRows, -size, size) * 0.3).template cast<Scalar>();
     x = Space::template displace<Scalar>(x, step);
@@ -91,14 +94,17 @@ TYPED_TEST(Streams, keep_their_bounds_for_any_chunks) {
     const auto x0 = random_point<Space, Scalar>(random, 0.9);
     const auto limits = random_limits<Space, Scalar>(random);
     StreamOptions<Scalar> options;
+    const double tick = std::array{1e-3, 1e-3, 2e-3, 8e-3}[static_cast<std::size_t>(trial / 4 % 4)];
+    options.dt = static_cast<Scalar>(tick);
     if (trial % 3 == 0) options.start = 100.0;
     if (trial % 2 == 0) options.delay = static_cast<Scalar>(random.uniform(0.0, 0.1));
+    if (trial % 4 > 1) options.blend = static_cast<Scalar>(random.uniform(0.0, 0.3));
     WatchedFilter<Space, Scalar, Stream<Space, Scalar, 64>> watched(x0, limits, options);
     auto& stream = watched.filter;
     double stamp = 100.0;
     const auto advance = [&]() {
       watched.advance();
-      stamp += kTick;
+      stamp += tick;
       if constexpr (kIsJointSpace<Space>) {
         constexpr Scalar kRound = 64 * std::numeric_limits<Scalar>::epsilon();
         ASSERT_LE((stream.reference().x - limits.upper).maxCoeff(), kRound);

@@ -39,6 +39,7 @@ class Stream {
       : dt_(options.dt),
         timeout_(options.timeout),
         delay_(options.delay),
+        blend_(options.blend),
         axes_(bounds, options.dt),
         reference_(Reference<Space, Scalar>::hold(orthonormalised(x0))),
         clock_(options.dt, options.timeout, options.start) {
@@ -58,7 +59,8 @@ class Stream {
   /// the stamp is not newer than all stamps before, or too far ahead (StampClock).
   bool push_chunk(const Timed* points, int count, std::optional<double> stamp = {}) noexcept {
     return is_chunk(points, count) && heard(stamp) &&
-           schedule_.replace(points, count, [this](const Point& x) noexcept { return usable(x); });
+           schedule_.continue_with(
+               points, count, [this](const Point& x) noexcept { return usable(x); }, clock_.age(), blend_);
   }
 
   /// Point observed at a time `stamp` [s]; default: the current time. The reference passes the point options.delay
@@ -185,6 +187,7 @@ class Stream {
   Scalar dt_;
   Scalar timeout_;
   Scalar delay_;
+  Scalar blend_;
   TargetAxes<Space, Scalar> axes_;
   Reference<Space, Scalar> reference_;
   RoundingCompensation<Space, Scalar> compensation_;

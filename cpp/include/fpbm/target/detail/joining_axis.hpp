@@ -97,7 +97,17 @@ struct JoiningAxis {
     const Scalar change = to.a * std::abs(to.a) / (Scalar(2) * axis.stop.jerk);
     return std::abs(to.a) <= axis.stop.acceleration && std::abs(to.a - from.a) <= axis.stop.jerk * tick &&
            std::abs(from.v) <= axis.velocity && std::abs(to.v) + tick * std::abs(to.a) <= axis.velocity &&
-           std::abs(to.v + change) <= axis.velocity;
+           std::abs(to.v + change) <= axis.velocity && is_motion(from, to);
+  }
+
+  /// Whether the displacement and the change of velocity are those of a motion within the bound on jerk. The rates of a
+  /// target with errors may be as large as any number, whose round-off is then larger than the bounds.
+  [[nodiscard]] bool is_motion(const AxisState<Scalar>& from, const AxisState<Scalar>& to) const noexcept {
+    const Scalar half = tick / Scalar(2);
+    const Scalar jump = tick * half * axis.stop.jerk / Scalar(2);
+    const Scalar round_off = Scalar(32) * std::numeric_limits<Scalar>::epsilon() * axis.velocity;
+    return std::abs(to.v - from.v - half * (to.a + from.a)) <= jump + round_off &&
+           std::abs(to.q - half * (to.v + from.v)) <= tick * jump + tolerance;
   }
 };
 

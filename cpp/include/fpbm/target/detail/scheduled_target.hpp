@@ -8,6 +8,8 @@
 
 #include "fpbm/path/reference.hpp"
 #include "fpbm/target/detail/chunk_piece.hpp"
+#include "fpbm/target/detail/continued_motion.hpp"
+#include "fpbm/target/detail/newest_rates.hpp"
 #include "fpbm/target/detail/spline_velocities.hpp"
 #include "fpbm/target/detail/target_bounds.hpp"
 
@@ -47,18 +49,14 @@ class ScheduledTarget {
   }
 
   /// Replaces the points from the first of `count` points on, whose times increase. After the last point, the target is
-  /// at rest, unless it was extended point by point: extended: number of these points, at most
-  /// kMemory. usable: changes a point to a point that the target may pass. Returns false without an effect if there is
-  /// not enough memory.
+  /// at rest, unless it was extended point by point: extended: number of these points, at most kMemory. usable: changes
+  /// a point to a point that the target may pass. Returns false without an effect if there is not enough memory.
   template <typename Usable>
   [[nodiscard]] bool replace(const Timed* points, int count, const Usable& usable, int extended = 0) noexcept {
     const std::size_t first = before(points[0].time);
     const std::size_t end = first + static_cast<std::size_t>(count);
     if (end > pieces_.size()) return false;
     const Twist none = zero();
-    const Scalar since = first > 0 ? points[0].time - pieces_[first - 1].from : Scalar(0);
-    const bool moves = first > 0 && since < pieces_[first - 1].h;
-    const Twist before_chunk = moves ? pieces_[first - 1].at(since).xd : none;
     for (std::size_t k = first; k < end; ++k) {
       const auto& [time, x, xd, xdd] = points[k - first];
       pieces_[k] = {time, {usable(x), none, none}, Scalar(0), none, {none, none}};
@@ -70,10 +68,7 @@ class ScheduledTarget {
     }
     if (first > 0) pieces_[first - 1].joined = false;
     size_ = end;
-    Piece* const chunk = pieces_.data() + first;
-    set_spline_velocities<Capacity>(chunk, static_cast<std::size_t>(count), [&](Twist& xd) noexcept {
-      if (moves) continue_velocity(chunk, before_chunk, xd);
-    });
+    set_spline_velocities<Capacity>(pieces_.data() + first, static_cast<std::size_t>(count));
     for (std::size_t k = first; k < end; ++k) {
       const auto& given = points[k - first].xd;
       if (given) pieces_[k].start.xd = *given;
@@ -92,9 +87,36 @@ class ScheduledTarget {
     return true;
   }
 
+  /// Replaces points as replace(), and continues the present motion of the target (continue_motion()) from the time
+  /// `now`, or from the first point if this point is later: a polynomial leads to a point of the chunk. The polynomial
+  /// takes at least `blend` [s], and at least the time between two points.
+  template <typename Usable>
+  [[nodiscard]] bool continue_with(const Timed* points, int count, const Usable& usable, Scalar now,
+                                   Scalar blend) noexcept {
+    const Scalar begin = std::max(now, points[0].time);
+    const Moving present = at(active(begin), begin);
+    const std::size_t from = begin > now ? before(begin) : 0;  // The pieces before are over.
+    if (!replace(points, count, usable)) return false;
+    const std::size_t k = active(begin);
+    const Piece piece = pieces_[k];
+    if (!piece.joined && !(blend > Scalar(0) && piece.h > Scalar(0))) return true;
+    const Moving own = piece.at(begin - piece.from);
+    const auto [start, all] = continue_motion<Space>(present, own, piece, pieces_[k + 1], blend);
+    std::size_t to = k + 1;
+    while (to + 1 < size_ && pieces_[to].from < begin + std::max(blend, piece.h)) ++to;
+    const Twist none = zero();
+    pieces_[from] = {begin, start, pieces_[to].from - begin, none, {none, none}, true};
+    pieces_[from].d = Space::template difference<Scalar>(pieces_[to].start.x, start.x);
+    pieces_[from].set_end(pieces_[to].start.xd, pieces_[to].start.xdd);
+    if (from > 0) pieces_[from - 1].joined = all;
+    for (std::size_t j = to; j < size_; ++j) pieces_[from + 1 + j - to] = pieces_[j];
+    size_ -= to - from - 1;
+    return true;
+  }
+
   /// Adds a point to a target that continues after its last point. The polynomial to the point continues the velocity
-  /// and the acceleration at the last point, and ends with the derivatives of the polynomial of degree 3 through the
-  /// last four points (Newton's form).
+  /// and the acceleration at the last point, and ends with the derivatives of the polynomial through the last points
+  /// (newest_rates()): four points, and six points if the points come slowly; fewer points after a gap.
   [[nodiscard]] bool extend(Scalar time, const Point& x) noexcept {
     const auto same = [](const Point& point) noexcept { return point; };
     const Twist none = zero();
@@ -104,25 +126,18 @@ class ScheduledTarget {
     }
     std::array<Scalar, kMemory> h{time - end().from};
     std::array<Twist, kMemory> q{Twist(Space::template difference<Scalar>(x, end().start.x) / h[0])};
-    const std::size_t count = std::min(kMemory, static_cast<std::size_t>(extended_));
-    for (std::size_t k = 1; k < count; ++k) {
-      const Piece& before = pieces_[size_ - 1 - k];
-      h[k] = before.h;
-      q[k] = before.d / before.h;
+    const std::size_t most = std::min(h[0] < kSlow ? 3 : kMemory, static_cast<std::size_t>(extended_));
+    std::size_t count = 1;
+    for (; count < most; ++count) {
+      const Piece& before = pieces_[size_ - 1 - count];
+      if (before.h < kEven * h[0]) break;
+      h[count] = before.h;
+      q[count] = before.d / before.h;
     }
-    Timed points[2] = {{end().from, end().start.x, last_.xd, last_.xdd}, {time, x, q[0], none}};
-    if (count > 1) {
-      const Twist second = (q[0] - q[1]) / (h[0] + h[1]);
-      *points[1].xd += h[0] * second;
-      *points[1].xdd += Scalar(2) * second;
-      if (count > 2) {
-        const Twist third = (second - (q[1] - q[2]) / (h[1] + h[2])) / (h[0] + h[1] + h[2]);
-        *points[1].xd += h[0] * (h[0] + h[1]) * third;
-        *points[1].xdd += Scalar(2) * (h[0] + h[0] + h[1]) * third;
-      }
-    }
+    const Rates<Twist> newest = newest_rates(h, q, count);
+    const Timed points[2] = {{end().from, end().start.x, last_.xd, last_.xdd}, {time, x, newest.xd, newest.xdd}};
     if (!replace(points, 2, same, std::min(extended_ + 1, static_cast<int>(kMemory)))) return false;
-    if (count > 1) pieces_[size_ - 3].joined = true;
+    if (extended_ > 2) pieces_[size_ - 3].joined = true;
     return true;
   }
 
@@ -170,7 +185,13 @@ class ScheduledTarget {
 
  private:
   /// Number of polynomials before a new point that determine its derivatives, with the polynomial to the point.
-  static constexpr std::size_t kMemory = 3;
+  static constexpr std::size_t kMemory = 5;
+  /// Time between points from which on kMemory polynomials are used instead of 3 [s]. They multiply the noise of the
+  /// points by 4 in the accelerations. At 10 Hz, this is as much as with 3 polynomials at 20 Hz.
+  static constexpr Scalar kSlow = Scalar(0.1);
+  /// Least time between points, relative to the newest, for an extrapolation from the points: a choice. After a gap,
+  /// the errors of the points before are multiplied.
+  static constexpr Scalar kEven = Scalar(0.25);
 
   [[nodiscard]] static Twist zero() noexcept { return filled<Twist>(Space::kRows); }
   [[nodiscard]] const Piece& end() const noexcept { return pieces_[size_ - 1]; }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -128,13 +129,15 @@ class TargetAxes {
                                       rate * rate * rate * schedule.largest_jerk(piece, now + h, i)};
       const AxisState<Scalar> own{Scalar(0), from.xd(i), from.xdd(i)};
       const Axis axis = (*this)(i);
-      const AxisState<Scalar> relative{Scalar(0), own.v - target.start.v, own.a};
+      // Targets of any velocity must not increase the tolerance.
+      const Scalar v = std::min(std::max(target.start.v, -axis.velocity), axis.velocity);
+      const AxisState<Scalar> relative{Scalar(0), own.v - v, own.a};
       Range<Scalar> range = axes_.range(i);
       if (i < kLengths) {
         if (!schedule.continues()) range = schedule.range_after(piece, now, start.x, i).within(range);
         range = range.from(coordinate(from.x, i));
       }
-      const JoiningAxis<Scalar> joining{axis, range, h, axis.tolerance(relative, size, h, kPart)};
+      const JoiningAxis<Scalar> joining{axis, range, h, axis.tolerance(relative, size, h, Axes::kPart)};
       bool on_target = false;
       motion.set(i, joining.after(seconds, own, error(i), target, on_target));
       motion.arrived = motion.arrived && on_target;
@@ -144,9 +147,6 @@ class TargetAxes {
 
  private:
   static constexpr int kLengths = Axes::kLengths;
-  /// `part` of TimeOptimalAxis::tolerance(). Jerks of joints by differences then exceed their bound by at most 3e-9 of
-  /// the bound, apart from the rounding of the positions (`make streams`); with 1e-6, by 3e-6.
-  static constexpr Scalar kPart = kIsJointSpace<Space> ? Scalar(1e-10) : Scalar(1e-6);
   static constexpr bool kRotates = Space::kRows - kLengths == 3;
 
   [[nodiscard]] static bool rests(const Moving& motion, int i) noexcept {

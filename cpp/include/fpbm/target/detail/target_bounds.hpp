@@ -60,6 +60,8 @@ template <typename Space, typename Scalar>
 struct AxesOf {
   using Bounds = TargetBounds<Scalar>;
   static constexpr int kLengths = Space::kRows - Space::kTurns;
+  /// `part` of TimeOptimalAxis::tolerance().
+  static constexpr Scalar kPart = Scalar(1e-6);
 
   TimeOptimalAxis<Scalar> lengths;
   TimeOptimalAxis<Scalar> angles;
@@ -77,6 +79,9 @@ template <int M, typename Scalar>
 struct AxesOf<JointSpace<M>, Scalar> {
   using Bounds = JointLimits<M, Scalar>;
   static constexpr int kLengths = M;
+  /// `part` of TimeOptimalAxis::tolerance(), which is reserved in the bounds. With 1e-10, one motion in 1,000 stays
+  /// 1e-15 rad from its target.
+  static constexpr Scalar kPart = Scalar(1e-8);
 
   std::array<TimeOptimalAxis<Scalar>, static_cast<std::size_t>(M)> each;
   Bounds limits;
@@ -92,14 +97,15 @@ struct AxesOf<JointSpace<M>, Scalar> {
       const Scalar acceleration = finite("limits.acceleration", limits.acceleration(i));
       const Scalar jerk = limits.jerk(i) > Scalar(2) * acceleration / dt ? Scalar(2) * acceleration / dt
                                                                          : finite("limits.jerk", limits.jerk(i));
-      // The differences of rounded positions are reserved: 8 halves of an ulp in a third difference, and two snaps to a
-      // target (TimeOptimalAxis::tolerance()), each of at most 16 ulp.
+      // Reserved for differences of positions: 8 halves of an ulp by rounding, and two snaps to a target, each of at
+      // most the tolerance.
       const Scalar widest = std::max(std::abs(limits.lower(i)), std::abs(limits.upper(i)));
-      const Scalar rounding =
-          Scalar(36) * std::numeric_limits<Scalar>::epsilon() * (std::isfinite(widest) ? widest : Scalar(1));
+      const Scalar off =
+          Scalar(36) * std::numeric_limits<Scalar>::epsilon() * (std::isfinite(widest) ? widest : Scalar(1)) +
+          Scalar(8) * kPart * jerk * dt * dt * dt;
       each[static_cast<std::size_t>(i)] = {
           finite("limits.velocity", limits.velocity(i)),
-          {reduced(acceleration, rounding / (dt * dt)), reduced(jerk, rounding / (dt * dt * dt))}};
+          {reduced(acceleration, off / (dt * dt)), reduced(jerk, off / (dt * dt * dt))}};
     }
   }
 
@@ -138,10 +144,14 @@ struct StreamOptions : TargetFilterOptions<Scalar> {
   /// Time after which the reference passes the points of push() [s]. With the period of the stream plus its jitter, the
   /// motion between the points is smooth. With 0, the target is extrapolated.
   Scalar delay = Scalar(0);
+  /// Time in which the target changes from a chunk to the next [s]. With 0, the reference joins a chunk that is not a
+  /// continuation of the chunk before in minimum time.
+  Scalar blend = Scalar(0);
 
   void require_good() const {
     TargetFilterOptions<Scalar>::require_good();
     validation::require_non_negative("delay", delay);
+    validation::require_non_negative("blend", blend);
   }
 };
 
