@@ -39,6 +39,10 @@ typename AxesOf<Space, Scalar>::Bounds random_limits(Random& random) {
       limits.velocity(i) = bounds.velocity * static_cast<Scalar>(random.uniform(0.5, 1.0));
       limits.acceleration(i) = bounds.acceleration * static_cast<Scalar>(random.uniform(0.5, 1.0));
       if (i != 3) limits.jerk(i) = bounds.jerk;
+      if (i > 3) {
+        limits.velocity_offset(i) = static_cast<Scalar>(random.uniform(0.0, 0.3));
+        limits.deceleration(i) = static_cast<Scalar>(random.uniform(1.0, 10.0));
+      }
     }
     return limits;
   } else {
@@ -109,6 +113,14 @@ TYPED_TEST(Streams, keep_their_bounds_for_any_chunks) {
         constexpr Scalar kRound = 64 * std::numeric_limits<Scalar>::epsilon();
         ASSERT_LE((stream.reference().x - limits.upper).maxCoeff(), kRound);
         ASSERT_LE((limits.lower - stream.reference().x).maxCoeff(), kRound);
+        for (int i = 0; i < Space::kRows; ++i) {
+          if (!std::isfinite(limits.deceleration(i))) continue;
+          const auto [x, xd, xdd] = stream.reference();
+          const Scalar distance = xd(i) > Scalar(0) ? limits.upper(i) - x(i) : x(i) - limits.lower(i);
+          const Scalar envelope =
+              std::sqrt(Scalar(2) * limits.deceleration(i) * std::max(distance, Scalar(0))) - limits.velocity_offset(i);
+          ASSERT_LE(std::abs(xd(i)), std::max(envelope, Scalar(0)) + Scalar(1e-6)) << i;
+        }
       }
     };
     for (int k = 0; k < 3000; ++k) {

@@ -19,6 +19,9 @@ struct TimeOptimalAxis {
   Scalar velocity;  ///< V, positive and finite.
   QuickestStop<Scalar> stop;
 
+  /// The velocity within the bound that is nearest to v.
+  [[nodiscard]] Scalar nearest_velocity(Scalar v) const noexcept { return std::min(std::max(v, -velocity), velocity); }
+
   /// State after `seconds` [s] of a time-optimal change to the velocity `desired`.
   [[nodiscard]] AxisState<Scalar> change(const AxisState<Scalar>& state, Scalar desired,
                                          Scalar seconds) const noexcept {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "fpbm/limits/detail/velocity_envelope.hpp"
 #include "fpbm/path/detail/time_optimal_axis.hpp"
 #include "fpbm/target/detail/target_bounds.hpp"
 
@@ -25,11 +26,16 @@ struct MovingAxis {
 /// on the target therefore stays on the target. Otherwise, the axis approaches the target in the frame that moves at
 /// the velocity of the target, as if the target had no acceleration. The quickest stop of the axis never leaves the
 /// range of the remaining points of the target, and if it is outside of this range, never moves away from the range:
-/// the axis does not overshoot, and ends within the range, also after the last point.
+/// the axis does not overshoot, and ends within the range, also after the last point. Toward the ends of a joint, the
+/// velocity of the quickest stop is within an envelope.
 template <typename Scalar>
 struct JoiningAxis {
+  using Envelope = VelocityEnvelope<Level::kAcceleration, Scalar>;
+
   TimeOptimalAxis<Scalar> axis;
-  Range<Scalar> range;  ///< Relative to the position of the axis.
+  Envelope envelope;    ///< Toward both ends, with stop position 0; delay 0: no envelope.
+  Range<Scalar> ends;   ///< Of the axis, relative to its position.
+  Range<Scalar> range;  ///< Of the remaining points, relative to the position of the axis.
   Scalar tick;          ///< [s]
   Scalar tolerance;     ///< TimeOptimalAxis::tolerance()
 
@@ -40,32 +46,46 @@ struct JoiningAxis {
     const TimeOptimalAxis<Scalar> spare = spare_axis(target);
     const bool may_join = spare.stop.acceleration > Scalar(0) && spare.stop.jerk > Scalar(0) &&
                           std::abs(from.a - target.start.a) <= spare.stop.acceleration;
-    const Scalar v = std::min(std::max(target.start.v, -axis.velocity), axis.velocity);
     const auto joined = [&](Scalar t, const AxisState<Scalar>& moved) noexcept {
       const AxisState<Scalar> left{Scalar(0), from.v - target.start.v, from.a - target.start.a};
+      const Scalar v = axis.nearest_velocity(target.start.v);
       const AxisState<Scalar> to = spare.approach(left, error, v, t, tolerance);
       on_target = to.q == error && to.v == Scalar(0) && to.a == Scalar(0);
       return AxisState<Scalar>{to.q + moved.q, to.v + moved.v, to.a + moved.a};
     };
     const Range<Scalar> now = extremes(from);
+    const Scalar beyond_now = beyond_envelope(from);
     const auto stays = [&](const AxisState<Scalar>& to) noexcept {
       const Range<Scalar> stop = extremes(to);
       return stop.high <= std::max(range.high + tolerance, now.high) &&
-             stop.low >= std::min(range.low - tolerance, now.low);
+             stop.low >= std::min(range.low - tolerance, now.low) &&
+             beyond_envelope(to) <= std::max(tolerance, beyond_now);
     };
     if (may_join) {
       const AxisState<Scalar> end = joined(tick, target.end);
       if (keeps_bounds(from, end) && stays(end)) return seconds == tick ? end : joined(seconds, target.then);
     }
     on_target = false;
-    const auto chasing = [&](Scalar t) noexcept {
-      const AxisState<Scalar> to = axis.approach({Scalar(0), from.v - v, from.a}, error, v, t, tolerance);
+    const auto chasing = [&](const TimeOptimalAxis<Scalar>& fast, Scalar t) noexcept {
+      const Scalar v = fast.nearest_velocity(target.start.v);
+      const AxisState<Scalar> to = fast.approach({Scalar(0), from.v - v, from.a}, error, v, t, tolerance);
       return AxisState<Scalar>{to.q + t * v, to.v + v, to.a};
     };
-    const AxisState<Scalar> end = chasing(tick);
-    if (stays(end)) return seconds == tick ? end : chasing(seconds);
-    const Scalar edge = extremes(end).high > std::max(range.high + tolerance, now.high) ? range.high : range.low;
-    return axis.approach(from, edge, Scalar(0), seconds, tolerance);
+    const AxisState<Scalar> end = chasing(axis, tick);
+    if (stays(end)) return seconds == tick ? end : chasing(axis, seconds);
+    const Range<Scalar> stop = extremes(end);
+    const bool far = stop.high > std::max(range.high + tolerance, now.high);
+    const bool near = stop.low < std::min(range.low - tolerance, now.low);
+    if (!(envelope.delay > Scalar(0)))
+      return axis.approach(from, far ? range.high : range.low, Scalar(0), seconds, tolerance);
+    // The envelope admits the velocity at the end of the stop everywhere before.
+    TimeOptimalAxis<Scalar> slow = axis;
+    slow.velocity = std::min({axis.velocity, envelope_at(ends.high - stop.high), envelope_at(stop.low - ends.low)});
+    const auto slower = [&](Scalar t) noexcept {
+      return far || near ? slow.approach(from, far ? range.high : range.low, Scalar(0), t, tolerance)
+                         : chasing(slow, t);
+    };
+    return stays(slower(tick)) ? slower(seconds) : axis.stop.ahead(from, seconds);
   }
 
  private:
@@ -81,6 +101,18 @@ struct JoiningAxis {
       reached.include(state.ahead((a - std::sqrt(root)) / axis.stop.jerk, std::copysign(axis.stop.jerk, state.v)).q);
     }
     return reached;
+  }
+
+  /// Largest excess of the quickest stop over the envelope, as a displacement (VelocityEnvelope::excess()).
+  [[nodiscard]] Scalar beyond_envelope(const AxisState<Scalar>& state) const noexcept {
+    if (!(envelope.delay > Scalar(0))) return Scalar(0);
+    return std::max(envelope.excess(axis.stop.jerk, {state.q - ends.high, state.v, state.a}),
+                    envelope.excess(axis.stop.jerk, {ends.low - state.q, -state.v, -state.a}));
+  }
+  /// Velocity that the envelope admits at a distance from an end.
+  [[nodiscard]] Scalar envelope_at(Scalar distance) const noexcept {
+    const Scalar twice = Scalar(2) * std::max(distance, Scalar(0));
+    return twice / (envelope.delay + std::sqrt(envelope.delay * envelope.delay + twice * envelope.softness));
   }
 
   /// Axis with the parts of the bounds that the target does not need in the tick. Between the ends of the tick, the

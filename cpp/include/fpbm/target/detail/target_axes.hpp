@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -130,14 +129,17 @@ class TargetAxes {
       const AxisState<Scalar> own{Scalar(0), from.xd(i), from.xdd(i)};
       const Axis axis = (*this)(i);
       // Targets of any velocity must not increase the tolerance.
-      const Scalar v = std::min(std::max(target.start.v, -axis.velocity), axis.velocity);
-      const AxisState<Scalar> relative{Scalar(0), own.v - v, own.a};
-      Range<Scalar> range = axes_.range(i);
+      const AxisState<Scalar> relative{Scalar(0), own.v - axis.nearest_velocity(target.start.v), own.a};
+      Range<Scalar> ends = axes_.range(i);
+      Range<Scalar> range = ends;
       if (i < kLengths) {
-        if (!schedule.continues()) range = schedule.range_after(piece, now, start.x, i).within(range);
-        range = range.from(coordinate(from.x, i));
+        const Scalar x = coordinate(from.x, i);
+        if (!schedule.continues()) range = schedule.range_after(piece, now, start.x, i).within(ends);
+        ends = ends.from(x);
+        range = range.from(x);
       }
-      const JoiningAxis<Scalar> joining{axis, range, h, axis.tolerance(relative, size, h, Axes::kPart)};
+      const JoiningAxis<Scalar> joining{
+          axis, axes_.envelope(i), ends, range, h, axis.tolerance(relative, size, h, Axes::kPart)};
       bool on_target = false;
       motion.set(i, joining.after(seconds, own, error(i), target, on_target));
       motion.arrived = motion.arrived && on_target;

@@ -8,6 +8,8 @@
 
 #include "fpbm/core/detail/validation.hpp"
 #include "fpbm/geometry/detail/joint_space.hpp"
+#include "fpbm/limits/detail/usable_bounds.hpp"
+#include "fpbm/limits/detail/velocity_envelope.hpp"
 #include "fpbm/model/joint.hpp"
 #include "fpbm/path/detail/time_optimal_axis.hpp"
 
@@ -71,6 +73,7 @@ struct AxesOf {
 
   [[nodiscard]] TimeOptimalAxis<Scalar> operator()(int i) const noexcept { return i < kLengths ? lengths : angles; }
   [[nodiscard]] Range<Scalar> range(int) const noexcept { return {}; }
+  [[nodiscard]] VelocityEnvelope<Level::kAcceleration, Scalar> envelope(int) const noexcept { return {}; }
 };
 
 /// Axes of a reference of joints: JointLimits. A joint without a bound on jerk may change its acceleration by any
@@ -94,9 +97,10 @@ struct AxesOf<JointSpace<M>, Scalar> {
         if (!(bound > Scalar(0) && std::isfinite(bound))) validation::fail(argument, bound, "positive and finite");
         return bound;
       };
+      finite("limits.velocity", limits.velocity(i));
       const Scalar acceleration = finite("limits.acceleration", limits.acceleration(i));
-      const Scalar jerk = limits.jerk(i) > Scalar(2) * acceleration / dt ? Scalar(2) * acceleration / dt
-                                                                         : finite("limits.jerk", limits.jerk(i));
+      limits.set(i, usable_bounds<Level::kAcceleration>(i, limits.joint(i), dt));
+      const Scalar jerk = std::min(limits.jerk(i), Scalar(2) * acceleration / dt);
       // Reserved for differences of positions: 8 halves of an ulp by rounding, and two snaps to a target, each of at
       // most the tolerance.
       const Scalar widest = std::max(std::abs(limits.lower(i)), std::abs(limits.upper(i)));
@@ -104,8 +108,7 @@ struct AxesOf<JointSpace<M>, Scalar> {
           Scalar(36) * std::numeric_limits<Scalar>::epsilon() * (std::isfinite(widest) ? widest : Scalar(1)) +
           Scalar(8) * kPart * jerk * dt * dt * dt;
       each[static_cast<std::size_t>(i)] = {
-          finite("limits.velocity", limits.velocity(i)),
-          {reduced(acceleration, off / (dt * dt)), reduced(jerk, off / (dt * dt * dt))}};
+          limits.velocity(i), {reduced(acceleration, off / (dt * dt)), reduced(jerk, off / (dt * dt * dt))}};
     }
   }
 
@@ -113,6 +116,9 @@ struct AxesOf<JointSpace<M>, Scalar> {
     return each[static_cast<std::size_t>(i)];
   }
   [[nodiscard]] Range<Scalar> range(int i) const noexcept { return {limits.lower(i), limits.upper(i)}; }
+  [[nodiscard]] VelocityEnvelope<Level::kAcceleration, Scalar> envelope(int i) const noexcept {
+    return {Scalar(0), limits.velocity_offset(i) / limits.deceleration(i), Scalar(1) / limits.deceleration(i)};
+  }
 
  private:
   /// A bound minus a reserve, which may be at most a part of the bound: in single precision, the rounding is larger
