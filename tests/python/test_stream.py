@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import fpbm_cpp as fp
+from fpbm_cpp.job.motion import READY as PRESET_POSTURES
 
 DT = 1e-3
 Q0 = np.array([0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785])
@@ -137,6 +138,72 @@ def test_a_tracker_keeps_a_clearance_and_torques(panda):
     np.testing.assert_allclose(commands[-1], Q0, atol=1e-3)
 
 
+@pytest.mark.parametrize("level", ["velocity", "acceleration"])
+@pytest.mark.parametrize("dt", [1e-3, 4e-3, 0.01])
+@pytest.mark.parametrize("name", ["panda", "so101", "two_pandas"])
+def test_a_tracker_follows_overlapping_chunks(name, dt, level):
+    arm = fp.Robot.preset(name) if name == "two_pandas" else fp.SerialArm.preset(name)
+    limits, n = arm.limits, arm.dof
+    if not np.isfinite(limits.jerk).all():
+        limits = replace(limits, jerk=50 * limits.acceleration)
+    q0 = np.clip(np.resize(Q0, n), 0.8 * limits.lower, 0.8 * limits.upper)
+    size = 0.02 * np.minimum(limits.acceleration, 10.0)
+
+    def postures(seconds):
+        return q0 + size * (1 - np.cos(2 * np.atleast_1d(seconds)[:, None] * (1 + np.arange(n) / n)))
+
+    task = fp.PostureTask(k1=20, k2=100) if level == "acceleration" else fp.PostureTask(k1=20)
+    scheme = fp.FPBM(0.6, np.ones(n), 0, 0) if level == "acceleration" else fp.MVN()
+    tracker = fp.Tracker(arm, scheme, q0, stack=fp.Stack([task]), limits=limits, dt=dt)
+    reserve = replace(limits, acceleration=0.95 * limits.acceleration, jerk=0.95 * limits.jerk)
+    stream = fp.JointStream(arm, q0, limits=reserve, dt=dt, start=0.0)
+    commands, error = [q0, q0, q0], 0.0
+    for k in range(round(3 / dt)):
+        if k % round(0.4 / dt) == 0:
+            stamp = k * dt - 0.1
+            assert stream.push_chunk(postures(stamp + 0.05 * np.arange(20)), period=0.05, stamp=stamp)
+        commands.append(tracker.tick(stream).q)
+        error = max(error, float(np.abs(commands[-1] - stream.q).max()))
+    for order, bound in enumerate((limits.velocity, limits.acceleration, limits.jerk), 1):
+        assert np.max(np.abs(np.diff(commands, order, axis=0)) / dt**order / bound) <= 1 + 1e-6
+    assert error <= 1e-4
+    np.testing.assert_allclose(commands[-1], postures(len(commands[3:]) * dt)[0], atol=3e-4)
+
+
+def test_the_velocity_envelopes_of_an_fr3():
+    """A posture beside the upper ends: the bounds on velocity decrease toward the ends."""
+    arm = fp.SerialArm.preset("fr3")
+    limits = arm.limits
+    stream = fp.JointStream(arm, PRESET_POSTURES["fr3"], start=0.0)
+    assert stream.push_chunk([limits.upper - 0.02], period=0.02)
+    q, qd = [], []
+    while np.any(stream.gap != 0.0):
+        stream.advance()
+        q.append(stream.q)
+        qd.append(stream.qd)
+    most = np.sqrt(2 * limits.deceleration * (limits.upper - np.array(q))) - limits.velocity_offset
+    assert np.all(qd <= most + 1e-6)
+    assert np.max(np.array(qd) / most) > 0.8
+    assert len(q) < 8000
+
+
+def test_a_blend_is_gentle(panda):
+    """Chunks that are alternately 1 mrad apart."""
+    largest = []
+    for blend in (0.0, 0.2):
+        stream = fp.JointStream(panda, Q0, blend=blend, start=0.0)
+        accelerations = []
+        for tick in range(3000):
+            if tick % 400 == 0:
+                postures = motion(tick * DT + 0.02 * np.arange(50)) + 1e-3 * (tick % 800 > 0)
+                assert stream.push_chunk(postures, period=0.02, stamp=tick * DT)
+            stream.advance()
+            accelerations.append(stream.qdd)
+        largest.append(np.abs(accelerations[1000:]).max())
+    assert largest[0] > 5.0
+    assert largest[1] < 1.1 * 0.2 * np.pi**2  # The acceleration of the motion.
+
+
 def test_a_pose_stream_of_a_tracker(panda):
     stack = fp.Stack([fp.PoseTask(k1=20, k2=100, name="hand")])
     tracker = fp.Tracker(panda, fp.FPBM(0.6, np.ones(7), 0, 0), Q0, stack=stack)
@@ -163,6 +230,8 @@ def test_bad_arguments(panda):
         fp.JointStream(panda, np.full(7, 4.0))
     with pytest.raises(fp.ParameterError, match="delay = -1"):
         fp.JointStream(panda, Q0, delay=-1.0)
+    with pytest.raises(fp.ParameterError, match="blend = -1"):
+        fp.JointStream(panda, Q0, blend=-1.0)
     with pytest.raises(fp.ParameterError, match="dt = 0"):
         fp.JointStream(panda, Q0, dt=0.0)
     stream = fp.JointStream(panda, Q0)
