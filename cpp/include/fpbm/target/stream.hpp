@@ -67,7 +67,7 @@ class Stream {
   /// later, and continues after the newest point at constant velocity until the timeout. Returns false for a rejected
   /// point, as push_chunk().
   bool push(const Point& x, std::optional<double> stamp = {}) noexcept {
-    return is_usable(x) && heard(stamp) && schedule_.extend(delay_, usable(x));
+    return is_usable(x) && heard(stamp) && schedule_.extend(delay_, usable(x), clock_.age());
   }
 
   /// Whether a point is finite, with a rotation R, and at most a tenth of the width of a joint's range outside this

@@ -9,7 +9,7 @@
 #include "fpbm/path/reference.hpp"
 #include "fpbm/target/detail/chunk_piece.hpp"
 #include "fpbm/target/detail/continued_motion.hpp"
-#include "fpbm/target/detail/newest_rates.hpp"
+#include "fpbm/target/detail/observed_points.hpp"
 #include "fpbm/target/detail/spline_velocities.hpp"
 #include "fpbm/target/detail/target_bounds.hpp"
 
@@ -32,10 +32,9 @@ class ScheduledTarget {
   /// time `now` on the new clock.
   void shift(Scalar seconds, Scalar now) noexcept {
     for (std::size_t k = 0; k < size_; ++k) pieces_[k].from -= seconds;
+    observed_.shift(seconds);
     std::size_t ended = 0;
     while (ended + 1 < size_ && pieces_[ended + 1].from <= now) ++ended;
-    // A point stream is extended by means of the last pieces.
-    ended = std::min(ended, size_ > kMemory ? size_ - kMemory : 0);
     for (std::size_t k = ended; k < size_; ++k) pieces_[k - ended] = pieces_[k];
     size_ -= ended;
   }
@@ -45,14 +44,14 @@ class ScheduledTarget {
     const Twist none = zero();
     pieces_[0] = {std::numeric_limits<Scalar>::lowest(), {x, none, none}, Scalar(0), none, {none, none}};
     size_ = 1;
-    extended_ = 0;
+    observed_.clear();
   }
 
   /// Replaces the points from the first of `count` points on, whose times increase. After the last point, the target is
-  /// at rest, unless it was extended point by point: extended: number of these points, at most kMemory. usable: changes
-  /// a point to a point that the target may pass. Returns false without an effect if there is not enough memory.
+  /// at rest, or continues at constant velocity. usable: changes a point to a point that the target may pass. Returns
+  /// false without an effect if there is not enough memory.
   template <typename Usable>
-  [[nodiscard]] bool replace(const Timed* points, int count, const Usable& usable, int extended = 0) noexcept {
+  [[nodiscard]] bool replace(const Timed* points, int count, const Usable& usable, bool continues) noexcept {
     const std::size_t first = before(points[0].time);
     const std::size_t end = first + static_cast<std::size_t>(count);
     if (end > pieces_.size()) return false;
@@ -81,9 +80,8 @@ class ScheduledTarget {
     }
     Moving& rest = pieces_[end - 1].start;
     last_ = rest;
-    if (extended == 0) rest.xd = none;
+    if (!continues) rest.xd = none;
     rest.xdd = none;
-    extended_ = extended;
     return true;
   }
 
@@ -96,7 +94,8 @@ class ScheduledTarget {
     const Scalar begin = std::max(now, points[0].time);
     const Moving present = at(active(begin), begin);
     const std::size_t from = begin > now ? before(begin) : 0;  // The pieces before are over.
-    if (!replace(points, count, usable)) return false;
+    if (!replace(points, count, usable, false)) return false;
+    observed_.clear();
     const std::size_t k = active(begin);
     const Piece piece = pieces_[k];
     if (!piece.joined && !(blend > Scalar(0) && piece.h > Scalar(0))) return true;
@@ -114,31 +113,22 @@ class ScheduledTarget {
     return true;
   }
 
-  /// Adds a point to a target that continues after its last point. The polynomial to the point continues the velocity
-  /// and the acceleration at the last point, and ends with the derivatives of the polynomial through the last points
-  /// (newest_rates()): four points, and six points if the points come slowly; fewer points after a gap.
-  [[nodiscard]] bool extend(Scalar time, const Point& x) noexcept {
+  /// Adds a point, after which the target continues. now: the present time. A polynomial leads from the point before to
+  /// the point, with the rates of ObservedPoints, or if the point before has passed, from the present target to the
+  /// prediction for two periods later (with one period, the accelerations are twice as large).
+  [[nodiscard]] bool extend(Scalar time, const Point& x, Scalar now) noexcept {
     const auto same = [](const Point& point) noexcept { return point; };
-    const Twist none = zero();
-    if (extended_ == 0 || !(time > end().from)) {
-      const Timed point{time, x, none, none};
-      return replace(&point, 1, same, 1);
-    }
-    std::array<Scalar, kMemory> h{time - end().from};
-    std::array<Twist, kMemory> q{Twist(Space::template difference<Scalar>(x, end().start.x) / h[0])};
-    const std::size_t most = std::min(h[0] < kSlow ? 3 : kMemory, static_cast<std::size_t>(extended_));
-    std::size_t count = 1;
-    for (; count < most; ++count) {
-      const Piece& before = pieces_[size_ - 1 - count];
-      if (before.h < kEven * h[0]) break;
-      h[count] = before.h;
-      q[count] = before.d / before.h;
-    }
-    const Rates<Twist> newest = newest_rates(h, q, count);
-    const Timed points[2] = {{end().from, end().start.x, last_.xd, last_.xdd}, {time, x, newest.xd, newest.xdd}};
-    if (!replace(points, 2, same, std::min(extended_ + 1, static_cast<int>(kMemory)))) return false;
-    if (extended_ > 2) pieces_[size_ - 3].joined = true;
-    return true;
+    if (!(time > observed_.time())) observed_.clear();
+    const bool first = observed_.empty();
+    const bool waits = !first && end().from == observed_.time() && end().from >= now;
+    const Moving start = waits ? Moving{end().start.x, last_.xd, last_.xdd} : at(active(now), now);
+    observed_.add(time, x);
+    const auto [xd, xdd] = observed_.rates(!waits);
+    const Scalar ahead = waits ? Scalar(0) : std::max(now + Scalar(2) * observed_.period() - time, Scalar(0));
+    const Timed points[2] = {{waits ? end().from : now, start.x, start.xd, start.xdd},
+                             {time + ahead, Space::template displace<Scalar>(x, ahead * (xd + ahead / Scalar(2) * xdd)),
+                              Twist(xd + ahead * xdd), xdd}};
+    return first ? replace(points + 1, 1, same, true) : replace(points, 2, same, true);
   }
 
   /// Index of the piece at a time.
@@ -166,8 +156,8 @@ class ScheduledTarget {
   }
 
   /// Whether the target continues after its last point, and the time of this point [s].
-  [[nodiscard]] bool continues() const noexcept { return extended_ > 0; }
-  [[nodiscard]] Scalar end_time() const noexcept { return end().from; }
+  [[nodiscard]] bool continues() const noexcept { return !observed_.empty(); }
+  [[nodiscard]] Scalar end_time() const noexcept { return observed_.time(); }
 
   /// Range of coordinate i of the points after a time, at which a piece is active, and of the target at this time.
   [[nodiscard]] Range<Scalar> range_after(std::size_t active_piece, Scalar time, const Point& now,
@@ -184,15 +174,6 @@ class ScheduledTarget {
   }
 
  private:
-  /// Number of polynomials before a new point that determine its derivatives, with the polynomial to the point.
-  static constexpr std::size_t kMemory = 5;
-  /// Time between points from which on kMemory polynomials are used instead of 3 [s]. They multiply the noise of the
-  /// points by 4 in the accelerations. At 10 Hz, this is as much as with 3 polynomials at 20 Hz.
-  static constexpr Scalar kSlow = Scalar(0.1);
-  /// Least time between points, relative to the newest, for an extrapolation from the points: a choice. After a gap,
-  /// the errors of the points before are multiplied.
-  static constexpr Scalar kEven = Scalar(0.25);
-
   [[nodiscard]] static Twist zero() noexcept { return filled<Twist>(Space::kRows); }
   [[nodiscard]] const Piece& end() const noexcept { return pieces_[size_ - 1]; }
 
@@ -212,8 +193,8 @@ class ScheduledTarget {
 
   std::array<Piece, static_cast<std::size_t>(Capacity)> pieces_;
   std::size_t size_ = 0;
-  Moving last_;       ///< Velocity and acceleration at the last point, before the target rests or continues.
-  int extended_ = 0;  ///< Number of points by which the target was extended, at most kMemory.
+  Moving last_;  ///< Velocity and acceleration at the last point, before the target rests or continues.
+  ObservedPoints<Space, Scalar> observed_;
 };
 
 }  // namespace fpbm
