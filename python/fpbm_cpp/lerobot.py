@@ -114,7 +114,8 @@ class _Part:
             slower = limits.replace(acceleration=SHARE * limits.acceleration, jerk=SHARE * limits.jerk)
             self.stream = JointStream(arm, q0, limits=slower, dt=dt, start=0.0, **options)
             scheme, stack = FPBM(0.6, np.ones(arm.dof), 0.0, 0.0), Stack(PostureTask(k1=K1, k2=K2))
-            self.source = Tracker(arm, scheme, q0, stack=stack, limits=limits, dt=dt, bounds=bounds)
+            # Without recovery, an arm that is blocked moves only if the stream moves.
+            self.source = Tracker(arm, scheme, q0, stack=stack, limits=limits, dt=dt, bounds=bounds, recovery=False)
             self._tick = partial(self.source.tick, self.stream)
         else:
             self.source = self.stream = JointStream(arm, q0, limits=limits, dt=dt, start=0.0, **options)

@@ -186,31 +186,45 @@ def test_each_of_two_arms_has_a_motor_bus(arms):
 
 PANDAS, CLEARANCE = fp.Robot.preset("two_pandas"), fp.Clearance.preset("two_pandas")
 READY = np.tile([0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785], 2)
-CROSSING = READY + np.array([0.8, 0.6, 0.0, 0.6, 0.0, 0.0, 0.0, -0.8, 0.6, 0.0, 0.6, 0.0, 0.0, 0.0])
+INWARD = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+OUT = READY + np.tile([0.0, 0.6, 0.0, 0.6, 0.0, 0.0, 0.0], 2)
 
 
 def distances(postures: Sequence[np.ndarray]) -> np.ndarray:
     return np.array([CLEARANCE.nearest(PANDAS, q).distance for q in postures])
 
 
-def test_two_arms_keep_their_clearance():
-    """A policy that moves the arms through each other, and back."""
+def crossing(turn: float) -> tuple[np.ndarray, list[Any]]:
+    """Sent postures and ticks for a policy that moves two arms through each other, and back."""
     follower = Follower(motors=PANDAS.joint_names)
     follower.position = dict(zip(follower.position, READY))
     safe = safe_robot(follower, PANDAS, limits=None, bounds=[CLEARANCE])
     stream, ticks = [], []
-    for k in range(600):
-        safe.step(dict(zip(follower.position, CROSSING if 10 < k < 350 else READY)), k * DT)
+    for k in range(1200):
+        safe.step(dict(zip(follower.position, OUT + turn * INWARD if 10 < k < 350 else READY)), k * DT)
         stream.append(safe.streams[0].q)
         ticks.append(safe.tick)
     sent = sent_joints(follower, names=PANDAS.joint_names)
     assert_bounds_kept(sent, PANDAS.limits)
     assert distances(stream).min() < -0.05
     assert distances(sent).min() >= CLEARANCE.margin
+    return sent, ticks
+
+
+def test_two_arms_keep_their_clearance():
+    sent, ticks = crossing(0.8)
     assert {ticks[100].status, ticks[349].status} == {fp.Status.BLOCKED, fp.Status.STALLED}
     assert ticks[349].nearest.distance == pytest.approx(CLEARANCE.margin, abs=1e-4)
     assert ticks[-1].status is fp.Status.OK
     np.testing.assert_allclose(sent[-1], READY, atol=1e-6)
+
+
+def test_arms_that_have_passed_each_other_stay_at_rest():
+    """The straight line to the stream is blocked. The arms do not move on their own."""
+    sent, ticks = crossing(1.4)
+    assert abs(sent[-1] - READY).max() > 1.0
+    assert ticks[-1].status in (fp.Status.BLOCKED, fp.Status.STALLED)
+    np.testing.assert_allclose(sent[-200:], np.tile(sent[-1], (200, 1)), atol=1e-6)
 
 
 @pytest.mark.parametrize("period", [DT, 1 / 30])
