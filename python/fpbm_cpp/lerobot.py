@@ -6,24 +6,34 @@ SafeRobot needs no import of LeRobot: each robot with the methods of `lerobot.ro
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
-from math import floor, pi
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
+from math import ceil, floor, pi
 from typing import Any
 
 import numpy as np
 
-from ._core import JointStream
+from ._core import JointStream, Tick, Tracker
 from ._types import Array
 from .arms import Arm
+from .bounds import Bound, bounds_of
 from .errors import ParameterError, wrong
 from .joints import JointLimits
 from .robots import Robot
+from .schemes import FPBM
+from .tasks import PostureTask, Stack
 
 __all__ = ["SafeRobot"]
 
 SUFFIX = ".pos"  # End of the keys of joints in actions of LeRobot.
 PAUSE = 0.1  # Longest motion between two steps [s]. In a longer pause of the loop, the robot holds its last command.
 ROUNDING = 1e-6  # Fraction of a tick.
+# Longest tick of a tracker [s]. With ticks of 10 ms, arms at the margin of a clearance do not return to the stream
+# (test_two_arms_keep_their_clearance), and the deviation from the stream is up to 0.5 rad
+# (test_a_tracker_follows_the_stream).
+TICK = 0.001
+SHARE = 0.95  # Accelerations and jerks of a stream, relative to the limits of the tracker that follows the stream.
+K1, K2 = 40.0, 400.0  # Gains of the tracker, with critical damping [1/s, 1/s^2].
 
 
 class _Units:
@@ -32,13 +42,11 @@ class _Units:
     An action of value v is the angle `scale * (v - zero)`.
     """
 
-    def __init__(self, bus: Any, joints: Sequence[str], given: str | None) -> None:
+    def __init__(self, robot: Any, names: Sequence[str], given: str | None) -> None:
         if given not in (None, "radians", "degrees"):
             raise wrong("units", given, f" = {given!r}: must be 'radians', 'degrees' or None")
-        if given is None and bus is None:
-            raise wrong("units", given, " = None: the robot has no motor bus: must be 'radians' or 'degrees'")
         fixed = {"radians": 1.0, "degrees": pi / 180}
-        pairs = [(fixed[given], 0.0) if given else _normalisation(bus, joint) for joint in joints]
+        pairs = [(fixed[given], 0.0) if given else _normalisation(*_motor(robot, name)) for name in names]
         columns = np.array(pairs).T
         self.scale: Array = columns[0]
         self.zero: Array = columns[1]
@@ -50,8 +58,20 @@ class _Units:
         return q / self.scale + self.zero
 
 
+def _motor(robot: Any, name: str) -> tuple[Any, str]:
+    """Motor bus of a joint, and the name of its motor. Robots with two arms have left_arm and right_arm."""
+    words = name.split("_")
+    for k in range(1, len(words)):
+        arm = getattr(robot, "_".join([*words[:k], "arm"]), None)
+        if arm is not None:
+            return getattr(arm, "bus", None), "_".join(words[k:])
+    return getattr(robot, "bus", None), name
+
+
 def _normalisation(bus: Any, joint: str) -> tuple[float, float]:
     """Scale and zero of a motor as `MotorsBus` of LeRobot defines its values; zero is the middle of the range."""
+    if bus is None:
+        raise wrong("units", None, " = None: the robot has no motor bus: must be 'radians' or 'degrees'")
     motor = bus.motors[joint]
     mode = str(getattr(motor.norm_mode, "value", motor.norm_mode))
     if mode == "degrees":
@@ -63,19 +83,49 @@ def _normalisation(bus: Any, joint: str) -> tuple[float, float]:
 
 
 class _Part:
-    """An arm of the robot: the keys of its joints, and its stream."""
+    """An arm of the robot: the keys of its joints, its stream, and the source of its postures."""
 
     def __init__(
-        self, robot: Any, prefix: str, arm: Arm | Robot, units: str | None, seen: Mapping[str, Any], **options: Any
+        self,
+        robot: Any,
+        prefix: str,
+        arm: Arm | Robot,
+        units: str | None,
+        seen: Mapping[str, Any],
+        bounds: Sequence[Bound],
+        *,
+        limits: JointLimits | None,
+        dt: float,
+        **options: Any,
     ) -> None:
-        self.keys = [f"{prefix}{name}{SUFFIX}" for name in arm.joint_names]
+        names = [f"{prefix}{name}" for name in arm.joint_names]
+        self.keys = [f"{name}{SUFFIX}" for name in names]
         missing = [key for key in self.keys if key not in seen]
         if missing:
             raise wrong("arms", arm, f": {missing[0]!r} is not in the observation: must be one of {sorted(seen)}")
-        owner = getattr(robot, f"{prefix}arm", robot)  # Robots with two arms have left_arm and right_arm.
-        self.units = _Units(getattr(owner, "bus", None), arm.joint_names, units)
+        self.units = _Units(robot, names, units)
         q0 = self.units.radians(np.array([float(seen[key]) for key in self.keys]))
-        self.stream = JointStream(arm, q0, start=0.0, **options)
+        self._ticks = max(1, ceil(dt / TICK - ROUNDING)) if bounds else 1
+        dt /= self._ticks
+        self.source: JointStream | Tracker  # Its q is the posture for the robot.
+        self._tick: Callable[[], Tick | None]
+        if bounds:
+            limits = arm.limits if limits is None else limits.of(arm)
+            slower = limits.replace(acceleration=SHARE * limits.acceleration, jerk=SHARE * limits.jerk)
+            self.stream = JointStream(arm, q0, limits=slower, dt=dt, start=0.0, **options)
+            scheme, stack = FPBM(0.6, np.ones(arm.dof), 0.0, 0.0), Stack(PostureTask(k1=K1, k2=K2))
+            # Without recovery, an arm that is blocked moves only if the stream moves.
+            self.source = Tracker(arm, scheme, q0, stack=stack, limits=limits, dt=dt, bounds=bounds, recovery=False)
+            self._tick = partial(self.source.tick, self.stream)
+        else:
+            self.source = self.stream = JointStream(arm, q0, limits=limits, dt=dt, start=0.0, **options)
+            self._tick = self.stream.advance
+
+    def advance(self) -> Tick | None:
+        """Advance by dt. Returns the last tick of the tracker, or None without bounds."""
+        for _ in range(self._ticks):
+            tick = self._tick()
+        return tick
 
 
 class SafeRobot:
@@ -84,8 +134,15 @@ class SafeRobot:
     robot is a connected follower. arms is the arm of the robot, or for several arms a mapping from the prefix of the
     keys to the arm: {"left_": arm, "right_": arm}. The names of the joints are the names of the motors. Keys of other
     motors, such as a gripper, are sent without a change. units is 'radians' or 'degrees', or None for the units of the
-    motor bus, with its calibration. limits replaces the limits of each arm. dt, timeout and delay are as for
-    JointStream: for single actions, a delay of the period of the loop makes the motion smooth.
+    motor bus, with its calibration. limits replaces the limits of each arm. dt, timeout, delay and blend are as for
+    JointStream: for single actions, a delay of the period of the loop makes the motion smooth. For chunks of a noisy
+    policy, a blend of 0.2 s makes the corrections gentle.
+
+    bounds are a Clearance, TaskBounds and TorqueBounds, as for Tracker. A tracker then follows the stream, and the
+    posture of the tracker is sent. If a bound does not admit the motion, the arm slows down or stops, and returns to
+    the stream when the bounds admit the motion. `tick` is the last Tick of the tracker: while a bound stops the arm,
+    `tick.status` is BLOCKED or STALLED, and `tick.nearest` is the nearest pair of shapes. For a clearance between
+    several arms, give one Robot with the joints of all arms.
 
     Actions that are not finite, of a wrong shape, out of order or far out of range are rejected: `rejected` is the
     number of these actions and chunks, and `problem` is the cause of the last rejection.
@@ -104,14 +161,21 @@ class SafeRobot:
         limits: JointLimits | None = None,
         timeout: float = 0.2,
         delay: float = 0.0,
+        blend: float = 0.0,
+        bounds: Iterable[Bound] = (),
     ) -> None:
         given = arms if isinstance(arms, Mapping) else {"": arms}
+        bounds = bounds_of(bounds)
+        if bounds and len(given) > 1:
+            arms_given = ", ".join(map(repr, given))
+            raise wrong("bounds", bounds, f": arms are {arms_given}: must be one arm: join the arms by Robot.from_arms")
         seen = robot.get_observation()
         self.robot, self.dt = robot, dt
         self.rejected = 0  # Number of rejected actions and chunks.
         self.problem = ""  # Cause of the last rejection.
-        options = {"limits": limits, "dt": dt, "timeout": timeout, "delay": delay}
-        self._parts = [_Part(robot, prefix, arm, units, seen, **options) for prefix, arm in given.items()]
+        self.tick: Tick | None = None  # Last tick of the tracker; None before the first tick and without bounds.
+        options: dict[str, Any] = {"limits": limits, "dt": dt, "timeout": timeout, "delay": delay, "blend": blend}
+        self._parts = [_Part(robot, prefix, arm, units, seen, bounds, **options) for prefix, arm in given.items()]
         of_arms = {key for part in self._parts for key in part.keys}
         self._keys = list(robot.action_features)
         self._others = [key for key in self._keys if key not in of_arms]
@@ -160,7 +224,7 @@ class SafeRobot:
             self._push(action, (now if stamp is None else stamp) - self._origin, period)
         for _ in range(due):
             for part in self._parts:
-                part.stream.advance()
+                self.tick = part.advance()
             self._ticks += 1
         return dict(self.robot.send_action(self._action()))
 
@@ -214,5 +278,5 @@ class SafeRobot:
             self._sent = dict(zip(self._others, self._waiting.pop(0)[1]))
         action = dict(self._sent)
         for part in self._parts:
-            action.update(zip(part.keys, part.units.values(np.asarray(part.stream.q)).tolist()))
+            action.update(zip(part.keys, part.units.values(np.asarray(part.source.q)).tolist()))
         return {key: action[key] for key in self._keys if key in action}

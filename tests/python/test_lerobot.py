@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any
@@ -56,10 +57,12 @@ class Follower:
 
     name = "so_follower"
 
-    def __init__(self, modes: list[str] | None = None, prefixes: tuple[str, ...] = ("",)) -> None:
+    def __init__(
+        self, modes: list[str] | None = None, prefixes: tuple[str, ...] = ("",), motors: Sequence[str] = MOTORS
+    ) -> None:
         if modes:
             self.bus = Bus(modes)
-        self.action_features = {f"{prefix}{name}.pos": float for prefix in prefixes for name in MOTORS}
+        self.action_features = {f"{prefix}{name}.pos": float for prefix in prefixes for name in motors}
         self.position = dict.fromkeys(self.action_features, 0.0)
         self.sent: list[dict[str, float]] = []
 
@@ -72,8 +75,8 @@ class Follower:
         return action
 
 
-def sent_joints(follower: Follower, prefix: str = "") -> np.ndarray:
-    return np.array([[each[f"{prefix}{name}.pos"] for name in ARM.joint_names] for each in follower.sent])
+def sent_joints(follower: Follower, prefix: str = "", names: Sequence[str] = ARM.joint_names) -> np.ndarray:
+    return np.array([[each[f"{prefix}{name}.pos"] for name in names] for each in follower.sent])
 
 
 def action_of(value: float, gripper: float = 0.0, prefix: str = "") -> dict[str, float]:
@@ -87,7 +90,7 @@ def assert_bounds_kept(q: np.ndarray, limits: fp.JointLimits = LIMITS) -> None:
 
 
 def safe_robot(follower: Follower, arms: Any = ARM, units: str | None = "radians", **options: Any) -> SafeRobot:
-    return SafeRobot(follower, arms, dt=DT, units=units, limits=LIMITS, **options)
+    return SafeRobot(follower, arms, units=units, **{"dt": DT, "limits": LIMITS, **options})
 
 
 def test_a_jump_becomes_a_motion_within_the_bounds():
@@ -147,7 +150,7 @@ def test_a_chunk_is_an_array_or_a_sequence_of_actions():
             safe.step(chunk if k == 5 else None, k * DT, period=1 / 30)
         sent.append(sent_joints(follower))
         assert_bounds_kept(sent[-1])
-        assert safe.rejected == 0
+    assert safe.rejected == 0
     assert (sent[0] == sent[1]).all()
     assert (sent[0] == sent[2]).all()
     assert abs(sent[0][-1] - 0.3).max() < 1e-3
@@ -165,15 +168,98 @@ def test_two_arms_have_two_streams():
         assert_bounds_kept(sent_joints(follower, prefix))
 
 
-def test_each_of_two_arms_has_a_motor_bus():
+BOTH = {"left": ARM, "right": ARM}
+
+
+@pytest.mark.parametrize("arms", [{"left_": ARM, "right_": ARM}, fp.Robot.from_arms(BOTH)], ids=["mapping", "Robot"])
+def test_each_of_two_arms_has_a_motor_bus(arms):
     follower = Follower(prefixes=("left_", "right_"))
     for side, mode in {"left": "degrees", "right": "range_m100_100"}.items():
         setattr(follower, f"{side}_arm", SimpleNamespace(bus=Bus([mode] * 6)))
     follower.position = dict.fromkeys(follower.position, 10.0)
-    safe = safe_robot(follower, {"left_": ARM, "right_": ARM}, units=None)
+    safe = safe_robot(follower, arms, units=None, limits=None)
+    left, right = np.concatenate([stream.q for stream in safe.streams]).reshape(2, 5)
     spans = [2300 - 20 * k for k in range(5)]
-    np.testing.assert_allclose(safe.streams[0].q, np.radians(10.0), rtol=1e-12)
-    np.testing.assert_allclose(safe.streams[1].q, 0.05 * 2 * np.pi * np.array(spans) / (RESOLUTION - 1), rtol=1e-12)
+    np.testing.assert_allclose(left, np.radians(10.0), rtol=1e-12)
+    np.testing.assert_allclose(right, 0.05 * 2 * np.pi * np.array(spans) / (RESOLUTION - 1), rtol=1e-12)
+
+
+PANDAS, CLEARANCE = fp.Robot.preset("two_pandas"), fp.Clearance.preset("two_pandas")
+READY = np.tile([0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785], 2)
+INWARD = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+OUT = READY + np.tile([0.0, 0.6, 0.0, 0.6, 0.0, 0.0, 0.0], 2)
+
+
+def distances(postures: Sequence[np.ndarray]) -> np.ndarray:
+    return np.array([CLEARANCE.nearest(PANDAS, q).distance for q in postures])
+
+
+def crossing(turn: float) -> tuple[np.ndarray, list[Any]]:
+    """Sent postures and ticks for a policy that moves two arms through each other, and back."""
+    follower = Follower(motors=PANDAS.joint_names)
+    follower.position = dict(zip(follower.position, READY))
+    safe = safe_robot(follower, PANDAS, limits=None, bounds=[CLEARANCE])
+    stream, ticks = [], []
+    for k in range(1200):
+        safe.step(dict(zip(follower.position, OUT + turn * INWARD if 10 < k < 350 else READY)), k * DT)
+        stream.append(safe.streams[0].q)
+        ticks.append(safe.tick)
+    sent = sent_joints(follower, names=PANDAS.joint_names)
+    assert_bounds_kept(sent, PANDAS.limits)
+    assert distances(stream).min() < -0.05
+    assert distances(sent).min() >= CLEARANCE.margin
+    return sent, ticks
+
+
+def test_two_arms_keep_their_clearance():
+    sent, ticks = crossing(0.8)
+    assert {ticks[100].status, ticks[349].status} == {fp.Status.BLOCKED, fp.Status.STALLED}
+    assert ticks[349].nearest.distance == pytest.approx(CLEARANCE.margin, abs=1e-4)
+    assert ticks[-1].status is fp.Status.OK
+    np.testing.assert_allclose(sent[-1], READY, atol=1e-6)
+
+
+def test_arms_that_have_passed_each_other_stay_at_rest():
+    """The straight line to the stream is blocked. The arms do not move on their own."""
+    sent, ticks = crossing(1.4)
+    assert abs(sent[-1] - READY).max() > 1.0
+    assert ticks[-1].status in (fp.Status.BLOCKED, fp.Status.STALLED)
+    np.testing.assert_allclose(sent[-200:], np.tile(sent[-1], (200, 1)), atol=1e-6)
+
+
+@pytest.mark.parametrize("period", [DT, 1 / 30])
+@pytest.mark.parametrize("jerk", [50 * LIMITS.acceleration, np.inf], ids=["jerk", "any-jerk"])
+def test_a_tracker_follows_the_stream(period, jerk):
+    """Chunks with jumps of up to 0.6 rad, within bounds that admit every motion."""
+    random, motors = np.random.default_rng(0), np.arange(6)
+    far = fp.TaskBounds(fp.PositionTask(), upper=10.0)
+    follower = Follower()
+    limits = replace(LIMITS, jerk=jerk)
+    safe = safe_robot(follower, dt=period, limits=limits, bounds=[far])
+    stream = []
+    for k in range(round(20 / period)):
+        times = k * period - 0.1 + 0.02 * np.arange(40)
+        chunk = 0.5 * np.sin(times)[:, None] * np.cos(motors) + random.uniform(-0.3, 0.3, 6)
+        jump = k and k % round(0.4 / period) == 0
+        safe.step(chunk if jump else None, k * period, period=0.02, stamp=times[0] if jump else None)
+        stream.append(safe.streams[0].q)
+    assert safe.rejected == 0
+    np.testing.assert_allclose(sent_joints(follower), stream, atol=2e-3)
+
+
+def test_a_blend_makes_corrections_gentle():
+    """Chunks of a smooth motion, each with another error of up to 1 mrad."""
+    largest = {}
+    for blend in (0.0, 0.2):
+        random, follower = np.random.default_rng(0), Follower()
+        safe = safe_robot(follower, blend=blend)
+        for k in range(400):
+            chunk = 0.2 * np.cos(0.5 * (k * DT + 0.02 * np.arange(40)))[:, None] + random.uniform(-1e-3, 1e-3, 6)
+            safe.step(chunk if k % 20 == 0 else None, k * DT, period=0.02)
+        q = sent_joints(follower)
+        assert_bounds_kept(q)
+        largest[blend] = abs(np.diff(q[150:], 2, axis=0)).max() / DT**2  # The motion to the first chunk ends before.
+    assert largest[0.2] < 0.2 * largest[0.0]
 
 
 NO_GRIPPER = np.column_stack([np.zeros((5, 5)), np.full(5, np.nan)])
@@ -240,6 +326,12 @@ def test_wrong_arguments_are_named():
         safe_robot(Follower(), units=None)
     with pytest.raises(fp.ParameterError, match="units = 'grad'"):
         safe_robot(Follower(), units="grad")
+    with pytest.raises(
+        fp.ParameterError, match="bounds: arms are 'left_', 'right_': must be one arm: join the arms by"
+    ):
+        safe_robot(Follower(prefixes=("left_", "right_")), {"left_": ARM, "right_": ARM}, bounds=[CLEARANCE])
+    with pytest.raises(fp.ParameterError, match=r"dt = -0\.01"):
+        safe_robot(Follower(), dt=-DT, bounds=[fp.TaskBounds(fp.PositionTask(), upper=10.0)])
     safe = safe_robot(Follower())
     with pytest.raises(fp.ParameterError, match="period"):
         safe.step(np.zeros((3, 6)), 0.0)
