@@ -216,7 +216,7 @@ const SerialArm<7>& panda() {
 /// Largest deviations of a reference from posture() while overlapping chunks arrive, each 100 ms after its first point.
 struct Deviation {
   double lag = 0.0;     ///< [rad]
-  double ripple = 0.0;  ///< Of the acceleration, relative to the amplitude of the acceleration.
+  double ripple = 0.0;  ///< Error of the acceleration, relative to its amplitude.
 };
 Deviation follow_chunks(double period, double tick, const StreamOptions<>& given, const Vector<7>& jump) {
   StreamOptions<> options = given;

@@ -34,8 +34,8 @@ struct JoiningAxis {
 
   TimeOptimalAxis<Scalar> axis;
   Envelope envelope;    ///< Toward both ends, with stop position 0; delay 0: no envelope.
-  Range<Scalar> ends;   ///< Of the axis, relative to its position.
-  Range<Scalar> range;  ///< Of the remaining points, relative to the position of the axis.
+  Range<Scalar> ends;   ///< Range of the axis, relative to its position.
+  Range<Scalar> range;  ///< Range of the remaining points, relative to the axis.
   Scalar tick;          ///< [s]
   Scalar tolerance;     ///< TimeOptimalAxis::tolerance()
 

@@ -18,7 +18,7 @@ class ObservedPoints {
 
   void clear() noexcept { known_ = 0; }
   [[nodiscard]] bool empty() const noexcept { return known_ == 0; }
-  [[nodiscard]] Scalar time() const noexcept { return time_; }  ///< Of the newest point [s].
+  [[nodiscard]] Scalar time() const noexcept { return time_; }  ///< Time of the newest point [s].
   void shift(Scalar seconds) noexcept { time_ -= seconds; }
 
   /// Adds a point that is newer than the points before.
