@@ -34,7 +34,7 @@ struct JoiningAxis {
 
   TimeOptimalAxis<Scalar> axis;
   Envelope envelope;    ///< Toward both ends, with stop position 0; delay 0: no envelope.
-  Range<Scalar> ends;   ///< Range of the axis, relative to its position.
+  Range<Scalar> ends;   ///< Range of the axis, relative to its position, with the round-off error of the position.
   Range<Scalar> range;  ///< Range of the remaining points, relative to the axis.
   Scalar tick;          ///< [s]
   Scalar tolerance;     ///< TimeOptimalAxis::tolerance()
@@ -53,13 +53,14 @@ struct JoiningAxis {
       on_target = to.q == error && to.v == Scalar(0) && to.a == Scalar(0);
       return AxisState<Scalar>{to.q + moved.q, to.v + moved.v, to.a + moved.a};
     };
+    // Ends of the stop: within the range with its tolerance, or not farther beyond the range than now.
     const Range<Scalar> now = extremes(from);
+    const Range<Scalar> most{std::min(std::max(range.low - tolerance, ends.low), now.low),
+                             std::max(std::min(range.high + tolerance, ends.high), now.high)};
     const Scalar beyond_now = beyond_envelope(from);
     const auto stays = [&](const AxisState<Scalar>& to) noexcept {
       const Range<Scalar> stop = extremes(to);
-      return stop.high <= std::max(range.high + tolerance, now.high) &&
-             stop.low >= std::min(range.low - tolerance, now.low) &&
-             beyond_envelope(to) <= std::max(tolerance, beyond_now);
+      return stop.low >= most.low && stop.high <= most.high && beyond_envelope(to) <= std::max(tolerance, beyond_now);
     };
     if (may_join) {
       const AxisState<Scalar> end = joined(tick, target.end);
@@ -74,8 +75,8 @@ struct JoiningAxis {
     const AxisState<Scalar> end = chasing(axis, tick);
     if (stays(end)) return seconds == tick ? end : chasing(axis, seconds);
     const Range<Scalar> stop = extremes(end);
-    const bool far = stop.high > std::max(range.high + tolerance, now.high);
-    const bool near = stop.low < std::min(range.low - tolerance, now.low);
+    const bool far = stop.high > most.high;
+    const bool near = stop.low < most.low;
     if (!(envelope.delay > Scalar(0)))
       return axis.approach(from, far ? range.high : range.low, Scalar(0), seconds, tolerance);
     // The envelope admits the velocity at the end of the stop everywhere before.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 
 #include "fpbm/core/types.hpp"
@@ -135,7 +136,8 @@ class TargetAxes {
       if (i < kLengths) {
         const Scalar x = coordinate(from.x, i);
         if (!schedule.continues()) range = schedule.range_after(piece, now, start.x, i).within(ends);
-        ends = ends.from(x);
+        const Scalar round_off = Scalar(8) * std::numeric_limits<Scalar>::epsilon() * size;
+        ends = {ends.low - x - round_off, ends.high - x + round_off};
         range = range.from(x);
       }
       const JoiningAxis<Scalar> joining{
