@@ -46,6 +46,19 @@ struct ChunkPiece {
   Twist d;              ///< Displacement to the next point.
   Rates<Twist> end;     ///< Rates of the displacement at the next point.
   bool joined = false;  ///< Whether the next piece begins at the next point with the same velocity and acceleration.
+  Twist low;            ///< Least coordinates of this piece and all pieces after this piece; lengths and joints only.
+  Twist high;           ///< Largest coordinates.
+
+  /// Rest, or motion at constant velocity, from a time on.
+  [[nodiscard]] static ChunkPiece last(Scalar time, const Moving& start) noexcept {
+    const auto none = filled<Twist>(Space::kRows);
+    return {time, start, Scalar(0), none, {none, none}, false, none, none};
+  }
+
+  void lead_to(const ChunkPiece& next) noexcept {
+    h = next.from - from;
+    d = Space::template difference<Scalar>(next.start.x, start.x);
+  }
 
   /// The target t [s] after the start.
   [[nodiscard]] Moving at(Scalar t) const noexcept {
@@ -90,6 +103,17 @@ struct ChunkPiece {
     range.include(x0 + Scalar(2) * first + square * start.xdd(i));
     range.include(x1 - last);
     range.include(x1 - Scalar(2) * last + square * end.xdd(i));
+  }
+
+  /// Sets `low` and `high`. next: the next piece, if there is one.
+  void set_range(const ChunkPiece* next) noexcept {
+    for (Eigen::Index i = 0; i < AxesOf<Space, Scalar>::kLengths; ++i) {
+      Range<Scalar> range{coordinate(start.x, i), coordinate(start.x, i)};
+      if (next != nullptr) range = {std::min(range.low, next->low(i)), std::max(range.high, next->high(i))};
+      if (h > Scalar(0)) include_extremes(i, range);
+      low(i) = range.low;
+      high(i) = range.high;
+    }
   }
 
   /// Accelerations at the ends of the polynomial of degree 3 with the positions and velocities of both points.

@@ -41,8 +41,7 @@ class ScheduledTarget {
 
   /// The target rests at x until the first point of a chunk.
   void hold(const Point& x) noexcept {
-    const Twist none = zero();
-    pieces_[0] = {std::numeric_limits<Scalar>::lowest(), {x, none, none}, Scalar(0), none, {none, none}};
+    pieces_[0] = Piece::last(std::numeric_limits<Scalar>::lowest(), Moving::hold(x));
     size_ = 1;
     observed_.clear();
   }
@@ -57,13 +56,10 @@ class ScheduledTarget {
     if (end > pieces_.size()) return false;
     const Twist none = zero();
     for (std::size_t k = first; k < end; ++k) {
-      const auto& [time, x, xd, xdd] = points[k - first];
-      pieces_[k] = {time, {usable(x), none, none}, Scalar(0), none, {none, none}};
+      pieces_[k] = Piece::last(points[k - first].time, Moving::hold(usable(points[k - first].x)));
       if (k == first) continue;
-      Piece& piece = pieces_[k - 1];
-      piece.h = time - piece.from;
-      piece.d = Space::template difference<Scalar>(pieces_[k].start.x, piece.start.x);
-      piece.joined = k + 1 < end;
+      pieces_[k - 1].lead_to(pieces_[k]);
+      pieces_[k - 1].joined = k + 1 < end;
     }
     if (first > 0) pieces_[first - 1].joined = false;
     size_ = end;
@@ -82,6 +78,7 @@ class ScheduledTarget {
     last_ = rest;
     if (!continues) rest.xd = none;
     rest.xdd = none;
+    set_ranges();
     return true;
   }
 
@@ -103,13 +100,14 @@ class ScheduledTarget {
     const auto [start, all] = continue_motion<Space>(present, own, piece, pieces_[k + 1], blend);
     std::size_t to = k + 1;
     while (to + 1 < size_ && pieces_[to].from < begin + std::max(blend, piece.h)) ++to;
-    const Twist none = zero();
-    pieces_[from] = {begin, start, pieces_[to].from - begin, none, {none, none}, true};
-    pieces_[from].d = Space::template difference<Scalar>(pieces_[to].start.x, start.x);
+    pieces_[from] = Piece::last(begin, start);
+    pieces_[from].joined = true;
+    pieces_[from].lead_to(pieces_[to]);
     pieces_[from].set_end(pieces_[to].start.xd, pieces_[to].start.xdd);
     if (from > 0) pieces_[from - 1].joined = all;
     for (std::size_t j = to; j < size_; ++j) pieces_[from + 1 + j - to] = pieces_[j];
     size_ -= to - from - 1;
+    set_ranges();
     return true;
   }
 
@@ -159,16 +157,15 @@ class ScheduledTarget {
   [[nodiscard]] bool continues() const noexcept { return !observed_.empty(); }
   [[nodiscard]] Scalar end_time() const noexcept { return observed_.time(); }
 
-  /// Range of coordinate i of the points after a time, at which a piece is active, and of the target at this time.
-  [[nodiscard]] Range<Scalar> range_after(std::size_t active_piece, Scalar time, const Point& now,
-                                          Eigen::Index i) const noexcept {
+  /// Range of coordinate i of the target `now`, at which a piece is active, and of the points after this time.
+  [[nodiscard]] Range<Scalar> range_after(std::size_t active_piece, const Point& now, Eigen::Index i) const noexcept {
     Range<Scalar> range{coordinate(now, i), coordinate(now, i)};
-    for (std::size_t k = active_piece; k < size_; ++k) {
-      const Piece& piece = pieces_[k];
-      if (piece.from > time) range.include(coordinate(piece.start.x, i));
-      // The part of the present piece that has passed must not extend the range.
-      const bool turns = piece.start.xd(i) * piece.end.xd(i) < Scalar(0);
-      if (piece.h > Scalar(0) && (k > active_piece || turns)) piece.include_extremes(i, range);
+    const Piece& piece = pieces_[active_piece];
+    // The part of the present piece that has passed must not extend the range.
+    if (piece.h > Scalar(0) && piece.start.xd(i) * piece.end.xd(i) < Scalar(0)) piece.include_extremes(i, range);
+    if (active_piece + 1 < size_) {
+      range.include(pieces_[active_piece + 1].low(i));
+      range.include(pieces_[active_piece + 1].high(i));
     }
     return range;
   }
@@ -177,6 +174,9 @@ class ScheduledTarget {
   [[nodiscard]] static Twist zero() noexcept { return filled<Twist>(Space::kRows); }
   [[nodiscard]] const Piece& end() const noexcept { return pieces_[size_ - 1]; }
 
+  void set_ranges() noexcept {
+    for (std::size_t k = size_; k-- > 0;) pieces_[k].set_range(k + 1 < size_ ? &pieces_[k + 1] : nullptr);
+  }
   /// Number of pieces that begin before a time.
   [[nodiscard]] std::size_t before(Scalar time) const noexcept {
     std::size_t k = 0;

@@ -135,7 +135,7 @@ class TargetAxes {
       Range<Scalar> range = ends;
       if (i < kLengths) {
         const Scalar x = coordinate(from.x, i);
-        if (!schedule.continues()) range = schedule.range_after(piece, now, start.x, i).within(ends);
+        if (!schedule.continues()) range = schedule.range_after(piece, start.x, i).within(ends);
         const Scalar round_off = Scalar(8) * std::numeric_limits<Scalar>::epsilon() * size;
         ends = {ends.low - x - round_off, ends.high - x + round_off};
         range = range.from(x);
