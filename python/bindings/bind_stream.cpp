@@ -26,9 +26,10 @@ class StreamOf : public PyStream {
   using Twist = typename Any::Twist;
   static constexpr bool kJoints = kIsJointSpace<Space>;
 
-  StreamOf(Any any, int rows, std::vector<std::string> names = {})
-      : PyStream(kJoints ? TaskKind::kPosture : TaskKind::kPose, rows, any.dt()),
-        any_(std::move(any)),
+  StreamOf(int rows, std::vector<std::string> names, const Point& x0,
+           const typename AxesOf<Space, double>::Bounds& bounds, const StreamOptions<>& options)
+      : PyStream(kJoints ? TaskKind::kPosture : TaskKind::kPose, rows, options.dt),
+        any_(x0, bounds, options),  // Constructed here: a stream of 64 joints has 4 MB.
         names_(std::move(names)) {}
 
   [[nodiscard]] StackTarget ahead(double seconds) const noexcept override {
@@ -186,16 +187,15 @@ std::unique_ptr<PostureStream> joint_stream(const Model& arm, const ArrayLike& q
   }
   Vector<kMaxDof> x0 = Vector<kMaxDof>::Zero();
   x0.head(n) = q;
-  return std::make_unique<PostureStream>(PostureStream::Any(x0, all, options_of(dt, timeout, delay, blend, start)), n,
-                                         arm.joint_names);
+  return std::make_unique<PostureStream>(n, arm.joint_names, x0, all, options_of(dt, timeout, delay, blend, start));
 }
 
 std::unique_ptr<PoseStream> pose_stream(const ArrayLike& x0, double velocity, double acceleration, double jerk,
                                         double angular_velocity, double angular_acceleration, double angular_jerk,
                                         double dt, double timeout, double delay, double blend, Number start) {
   const TargetBounds<> bounds{velocity, acceleration, jerk, angular_velocity, angular_acceleration, angular_jerk};
-  return std::make_unique<PoseStream>(
-      PoseStream::Any(transform(x0, "x0"), bounds, options_of(dt, timeout, delay, blend, start)), 6);
+  return std::make_unique<PoseStream>(6, std::vector<std::string>{}, transform(x0, "x0"), bounds,
+                                      options_of(dt, timeout, delay, blend, start));
 }
 
 template <typename Bound, typename Class>

@@ -685,6 +685,9 @@ class JointStream(Stream):
     delay : float
         Time after which the reference passes the postures of push [s]: the period of the stream plus its jitter. With 0, the
         motion is extrapolated.
+    blend : float
+        Time in which the target changes from a chunk to the next [s]: gentle corrections for noisy policies. With 0, a chunk
+        that does not continue the chunk before is joined in minimum time.
     start : float, optional
         Time of the first tick on the clock of the stamps [s]. Default: estimated from the stamps.
 
@@ -702,6 +705,7 @@ class JointStream(Stream):
         dt: typing.SupportsFloat | typing.SupportsIndex = 0.001,
         timeout: typing.SupportsFloat | typing.SupportsIndex = 0.2,
         delay: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        blend: typing.SupportsFloat | typing.SupportsIndex = 0.0,
         start: typing.SupportsFloat | typing.SupportsIndex | None = None,
     ) -> None: ...
     def advance(self) -> None:
@@ -787,7 +791,7 @@ class PoseStream(Stream):
         Bounds of each axis of the base frame, [m/s], [m/s^2] and [m/s^3].
     angular_velocity, angular_acceleration, angular_jerk : float
         Bounds of the angle about each axis [rad/s], [rad/s^2] and [rad/s^3].
-    dt, timeout, delay, start
+    dt, timeout, delay, blend, start
         As for JointStream.
 
     Raises
@@ -808,6 +812,7 @@ class PoseStream(Stream):
         dt: typing.SupportsFloat | typing.SupportsIndex = 0.001,
         timeout: typing.SupportsFloat | typing.SupportsIndex = 0.2,
         delay: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        blend: typing.SupportsFloat | typing.SupportsIndex = 0.0,
         start: typing.SupportsFloat | typing.SupportsIndex | None = None,
     ) -> None: ...
     def advance(self) -> None:
