@@ -112,6 +112,37 @@ void smooth() {
   }
 }
 
+/// The largest acceleration after a chunk 1 mrad beside the chunk before [rad/s²].
+double acceleration_of_a_correction(double blend) {
+  StreamRobot robot;
+  stand_in::parameters.stream.blend = blend;
+  check(robot.load() && robot.activate(), "a chunk beside the last: activated", 1);
+  const Posture beside = kStart + Posture::Constant(1e-3);
+  robot.hear("~/joint_trajectory", message(0.0, 50, [](double) { return kStart; }));
+  robot.tick(100);
+  robot.hear("~/joint_trajectory", message(0.1, 50, [&](double) { return beside; }));
+  double largest = 0.0;
+  Posture before = robot.posture();
+  Posture last = before;
+  for (int i = 0; i < 500; ++i) {
+    robot.tick();
+    largest = std::max(largest, (robot.posture() - 2.0 * last + before).cwiseAbs().maxCoeff() / 1e-6);
+    before = last;
+    last = robot.posture();
+  }
+  check(robot.from(beside) < 1e-6, "a chunk beside the last: distance after 0.5 s [rad]", robot.from(beside));
+  limits_hold(robot, "a chunk beside the last");
+  return largest;
+}
+
+/// stream.blend reduces the accelerations of corrections.
+void blend() {
+  const double quickest = acceleration_of_a_correction(0.0);
+  const double blended = acceleration_of_a_correction(0.2);
+  check(quickest > 1.0, "blend 0: largest acceleration of a correction of 1 mrad [rad/s2]", quickest);
+  check(blended < 0.05 * quickest, "blend 0.2: largest acceleration of a correction of 1 mrad [rad/s2]", blended);
+}
+
 /// Single postures at 50 Hz that end in motion.
 void single() {
   StreamRobot robot(0.0, 0.04);
@@ -198,6 +229,7 @@ void streams() {
   chunks();
   timed_posture();
   smooth();
+  blend();
   single();
   obstacle();
   restarts();

@@ -71,6 +71,7 @@ void require_finite(const target_controller::Params& params) {
       {"target.angular_jerk", target.angular_jerk},
       {"target.timeout", target.timeout},
       {"stream.delay", params.stream.delay},
+      {"stream.blend", params.stream.blend},
       {"clearance.margin", params.clearance.margin},
       {"torque_bounds.fraction", params.torque_bounds.fraction},
       {"torque_bounds.payload.uncertainty", params.torque_bounds.payload.uncertainty}};
@@ -124,6 +125,7 @@ void TargetController::read_parameters() {
   filter.dt = dt_;
   filter.timeout = target.timeout;
   filter.delay = params_.stream.delay;
+  filter.blend = params_.stream.blend;
   const fpbm::TargetBounds<> bounds{target.velocity,         target.acceleration,         target.jerk,
                                     target.angular_velocity, target.angular_acceleration, target.angular_jerk};
   try {
