@@ -102,6 +102,7 @@ struct Params {
   struct Stream {
     double delay = 0.0;
     double blend = 0.0;
+    double keep_path = 0.0;
   } stream;
 };
 
@@ -199,6 +200,7 @@ void for_each_parameter(target_controller::Params& p, Visit&& visit) {
   visit("target.timeout", p.target.timeout, above_zero);
   visit("stream.delay", p.stream.delay, not_negative);
   visit("stream.blend", p.stream.blend, not_negative);
+  visit("stream.keep_path", p.stream.keep_path, not_negative);
 }
 
 }  // namespace stand_in

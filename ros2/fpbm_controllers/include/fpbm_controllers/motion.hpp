@@ -59,6 +59,7 @@ struct MotionSettings {
   fpbm::TargetBounds<> target;   ///< Bounds on each task's reference.
   fpbm::StreamOptions<> filter;  ///< The delay and the blend are only for streams of joint positions.
   SharedBounds::View bounds;
+  double keep_path;  ///< Tolerance of a KeptStream [rad].
 };
 
 /// The motion of a robot toward the targets of its tasks, each through a filter, or along a stream of joint positions.
