@@ -100,6 +100,14 @@ void configurations() {
   refused("scheme.k1", ParameterValue(1e5), "scheme.k1");
   refused("stream.delay", ParameterValue(std::numeric_limits<double>::infinity()),
           "stream.delay: is inf: must be finite");
+  refused("stream.blend", ParameterValue(kNan), "parameter 'stream.blend' is invalid\n");
+  refused("stream.blend", ParameterValue(-0.1), "parameter 'stream.blend' is invalid\n");
+  refused("stream.blend", ParameterValue(std::numeric_limits<double>::infinity()),
+          "stream.blend: is inf: must be finite\n");
+  refused("stream.keep_path", ParameterValue(1e-3), "stream.keep_path: is 0.001000: must be 0 or at least 0.004176");
+  refused("stream.keep_path", ParameterValue(-0.1), "parameter 'stream.keep_path' is invalid\n");
+  refused("stream.keep_path", ParameterValue(std::numeric_limits<double>::infinity()),
+          "stream.keep_path: is inf: must be finite\n");
   refused("stream.dely", ParameterValue(0.1), "stream.dely: is not a parameter of this controller: give stream.delay");
   const auto has = [](stand_in::Robot& robot, const std::string& topic) {
     try {

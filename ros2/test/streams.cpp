@@ -18,6 +18,8 @@ using diagnostic_msgs::msg::DiagnosticStatus;
 using geometry_msgs::msg::PoseStamped;
 using std_msgs::msg::Float64;
 
+constexpr double kPi = 3.141592653589793;
+
 /// Chunks at 10 Hz with jumps of up to 70 mrad, up to 90 ms late. Some chunks arrive after newer chunks, or are
 /// invalid.
 void chunks() {
@@ -90,6 +92,7 @@ void timed_posture() {
 void smooth() {
   for (const bool moving : {false, true}) {
     StreamRobot robot;
+    stand_in::parameters.stream.keep_path = moving ? 0.01 : 0.0;
     check(robot.load() && robot.activate(), "smooth chunks: activated", 1);
     double error = 0.0;
     std::vector<double> times;
@@ -110,6 +113,37 @@ void smooth() {
     check(error < 1e-4, "smooth chunks: lag [rad]", error);
     limits_hold(robot, "smooth chunks");
   }
+}
+
+/// The largest acceleration after a chunk 1 mrad beside the chunk before [rad/s²].
+double acceleration_of_a_correction(double blend) {
+  StreamRobot robot;
+  stand_in::parameters.stream.blend = blend;
+  check(robot.load() && robot.activate(), "a chunk beside the last: activated", 1);
+  const Posture beside = kStart + Posture::Constant(1e-3);
+  robot.hear("~/joint_trajectory", message(0.0, 50, [](double) { return kStart; }));
+  robot.tick(100);
+  robot.hear("~/joint_trajectory", message(0.1, 50, [&](double) { return beside; }));
+  double largest = 0.0;
+  Posture before = robot.posture();
+  Posture last = before;
+  for (int i = 0; i < 500; ++i) {
+    robot.tick();
+    largest = std::max(largest, (robot.posture() - 2.0 * last + before).cwiseAbs().maxCoeff() / 1e-6);
+    before = last;
+    last = robot.posture();
+  }
+  check(robot.from(beside) < 1e-6, "a chunk beside the last: distance after 0.5 s [rad]", robot.from(beside));
+  limits_hold(robot, "a chunk beside the last");
+  return largest;
+}
+
+/// stream.blend reduces the accelerations of corrections.
+void blend() {
+  const double quickest = acceleration_of_a_correction(0.0);
+  const double blended = acceleration_of_a_correction(0.2);
+  check(quickest > 1.0, "blend 0: largest acceleration of a correction of 1 mrad [rad/s2]", quickest);
+  check(blended < 0.05 * quickest, "blend 0.2: largest acceleration of a correction of 1 mrad [rad/s2]", blended);
 }
 
 /// Single postures at 50 Hz that end in motion.
@@ -157,6 +191,91 @@ void obstacle() {
   limits_hold(robot, "a stream with a ball");
 }
 
+/// Closed path of the joints 1 and 4.
+Posture loop(double phase) {
+  Posture q = kStart;
+  q(0) += 0.3 * (1.0 - std::cos(phase));
+  q(3) += 0.15 * std::sin(phase);
+  return q;
+}
+
+/// Largest distance of a joint from the nearest posture of the loop [rad].
+double from_loop(const Posture& q) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 2000; ++k) {
+    nearest = std::min(nearest, (q - loop(kPi * k / 1000.0)).cwiseAbs().maxCoeff());
+  }
+  return nearest;
+}
+
+/// The loop as a chunk of 2.4 s from a stamp [s] on, from rest to rest.
+JointTrajectory loop_message(double stamp) {
+  return message(stamp, 121, [stamp](double t) { return loop(kPi * (1.0 - std::cos(kPi * (t - stamp) / 2.4))); });
+}
+
+/// A ball at the farthest point of the loop.
+stand_in::PlanningScene ball_on_loop(const StreamRobot& robot) {
+  const fpbm::Vector<3> centre =
+      fpbm::rotation(fpbm::Vector<3>(0.0, 0.0, 0.6)) * (robot.tip().p + fpbm::Vector<3>(0.0, 0.0, 0.1));
+  return stand_in::scene({stand_in::sphere("ball", 0.1, centre)});
+}
+
+/// The largest distance from the loop of an arm that a ball blocks for 3 s [rad].
+double deviation(double keep_path) {
+  StreamRobot robot(kMargin);
+  stand_in::parameters.stream.keep_path = keep_path;
+  check(robot.load() && robot.activate(), "a blocked path: activated", 1);
+  robot.see(ball_on_loop(robot));
+  robot.hear("~/joint_trajectory", loop_message(0.0));
+  double largest = 0.0;
+  double farthest = 0.0;
+  for (int i = 0; i < 9000; ++i) {
+    if (i == 3000) robot.see(stand_in::scene({}, false));
+    robot.tick();
+    largest = std::max(largest, from_loop(robot.posture()));
+    farthest = std::max(farthest, robot.command[0]);
+  }
+  check((farthest > 0.59) == (keep_path > 0.0), "a blocked path: farthest posture of joint 1, 0.6 [rad]", farthest);
+  check(robot.from(kStart) < 1e-6, "a blocked path: distance from the end [rad]", robot.from(kStart));
+  limits_hold(robot, "a blocked path");
+  return largest;
+}
+
+/// Motion that does not reach the ball.
+Posture swing(double t) {
+  return kStart - Posture::Unit(0) * 0.25 * (1.0 - std::cos(3.0 * (t - 5.0)));
+}
+
+/// With stream.keep_path, the reference waits on the path while a ball blocks the arm. A message ends the wait, and
+/// later chunks are followed without a lag.
+void kept_path() {
+  const double cut = deviation(0.0);
+  const double kept = deviation(0.01);
+  check(cut > 0.1, "without keep_path: largest distance from the path [rad]", cut);
+  check(kept < 0.012, "keep_path 0.01: largest distance from the path [rad]", kept);
+  StreamRobot robot(kMargin);
+  stand_in::parameters.stream.keep_path = 0.01;
+  check(robot.load() && robot.activate(), "a message ends a wait: activated", 1);
+  robot.see(ball_on_loop(robot));
+  robot.hear("~/joint_trajectory", loop_message(0.0));
+  robot.tick(5000);
+  check(robot.speed() < 1e-6 && robot.from(kStart) > 0.1, "a message ends a wait: distance before [rad]",
+        robot.from(kStart));
+  const double age = std::stod(value(robot.status(), "age of the newest stamp [s]"));
+  check(std::abs(age - 5.0) < 0.01, "a message ends a wait: age of the newest stamp [s]", age);
+  double error = 0.0;
+  for (int i = 0; i < 6000; ++i) {
+    const double now = 5.0 + 1e-3 * i;
+    if (i % 100 == 0) robot.hear("~/joint_trajectory", message(now, 50, swing));
+    robot.tick();
+    if (i > 4000) error = std::max(error, robot.from(swing(now + 1e-3)));
+  }
+  const int rejected = std::stoi(value(robot.status(), "targets rejected"));
+  check(rejected == 0, "a message ends a wait: rejected because of their stamps", rejected);
+  check(error < 1e-4, "a message ends a wait: lag of later chunks [rad]", error);
+  limits_hold(robot, "a message ends a wait");
+}
+
 /// Activation, the speed, a lock and a fault. After each restart, the arm holds its posture until the next message.
 void restarts() {
   StreamRobot robot;
@@ -198,7 +317,9 @@ void streams() {
   chunks();
   timed_posture();
   smooth();
+  blend();
   single();
   obstacle();
+  kept_path();
   restarts();
 }

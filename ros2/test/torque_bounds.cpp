@@ -7,6 +7,7 @@
 #include <two_arms.hpp>
 
 #include "check.hpp"
+#include "stream_robot.hpp"
 #include "tests.hpp"
 
 namespace {
@@ -55,9 +56,12 @@ double largest_ratio(Lifter& robot, const fpbm::Dynamics<7>& dynamics) {
   Joints qd = velocity();
   double largest = 0.0;
   for (int i = 0; i < 4000; ++i) {
+    const double side = i / 500 % 2 == 0 ? 1.0 : -1.0;
     Transform<> goal = start;
-    goal.p += (i / 500 % 2 == 0 ? 1.0 : -1.0) * fpbm::Vector<3>(0.1, 0.2, 0.2);
-    if (i % 50 == 0) robot.hear("~/target_pose", pose_message(goal));
+    goal.p += side * fpbm::Vector<3>(0.1, 0.2, 0.2);
+    const Posture posture = kStart + Posture::Constant(0.3 * side);
+    if (i % 50 == 0 && stand_in::parameters.input == "poses") robot.hear("~/target_pose", pose_message(goal));
+    if (i % 500 == 0 && stand_in::parameters.input == "joints") robot.hear("~/joint_trajectory", message(posture));
     robot.tick();
     const Joints qdd = (velocity() - qd) * 1000.0;  // Constant in the tick.
     dynamics.robot().update(q, qd, state);
@@ -104,6 +108,21 @@ void heavy_payload() {
     const bool activated = counterweight.activate();
     if (uncertainty == 0.0) check(activated, "a counterweight of 1 kg: activated", 1);
     if (uncertainty > 0.0) check(!activated && logged("panda_joint6"), "of 0.5 to 1.5 kg: refused, named", 1);
+  }
+}
+
+/// Sudden postures of a stream.
+void stream() {
+  auto& own = stand_in::parameters;
+  for (const double fraction : {0.0, 0.9}) {
+    Lifter robot;
+    own.input = "joints";
+    own.torque_bounds.fraction = fraction;
+    check(robot.load() && robot.activate(), "a stream with torques: activated", 1);
+    const double ratio = largest_ratio(robot, loaded(3.0));
+    if (fraction == 0.0) check(ratio > 1.02, "a stream without bounds: largest torque, of the effort", ratio);
+    if (fraction > 0.0) check(0.8 < ratio && ratio <= 0.9 + 1e-6, "a stream, bounds of 0.9: largest torque", ratio);
+    check(robot.allocated == 0, "a stream with torques: allocations", static_cast<double>(robot.allocated));
   }
 }
 
@@ -202,6 +221,7 @@ void refusals() {
 
 void torque_bounds() {
   heavy_payload();
+  stream();
   feed_forward();
   stacks();
   refusals();

@@ -2,12 +2,12 @@
 #include <fpbm/model/robot.hpp>
 #include <fpbm/realtime/stack_tracker.hpp>
 #include <fpbm/scheme/schemes.hpp>
-#include <fpbm/target/stream.hpp>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <vector>
 
+#include "fpbm_controllers/kept_stream.hpp"
 #include "fpbm_controllers/motion.hpp"
 
 namespace fpbm_controllers {
@@ -22,8 +22,7 @@ using Space = Stack::Space;
 using Tasks = fpbm::RobotTasks<Robot, Stack>;
 using Scheme = fpbm::ByLevels<fpbm::AccelerationScheme<kDof>, Stack>;
 using Tracker = fpbm::Tracker<Tasks, Space, Scheme, SharedBounds::View>;
-using Stream = fpbm::JointStream<fpbm::kMaxDof, double, JointChunk::kPoints>;
-using Padded = Stream::Point;
+using Padded = fpbm::Vector<fpbm::kMaxDof>;
 
 [[nodiscard]] Padded padded(const MotionScheme::Joints& q) {
   Padded all = Padded::Zero();
@@ -47,7 +46,7 @@ class JointMotion final : public Motion {
         tip_(settings.tasks.at(0).frame),
         tasks_(robot_, stack_of(settings)),
         bounds_(settings.bounds),
-        stream_(stream_within<JointChunk::kPoints>(limits_.bounds(), settings.filter)) {
+        stream_(limits_.bounds(), settings.filter, settings.keep_path) {
     tip_.bind(robot_);
     const fpbm::TickOfGains<> tick{options_.dt, 0.0};
     const Scheme scheme = scheme_from(Joints::Zero(robot_.dof()));
@@ -62,25 +61,20 @@ class JointMotion final : public Motion {
   void begin(const Joints& q, const Joints& rest) override {
     const fpbm::State<kDof> start{q, Joints::Zero(q.size())};
     tracker_.emplace(tasks_, Space{}, scheme_from(rest), start, options_, limits_, start.qd, bounds_);
-    (void)stream_.reset(padded(q));
+    stream_.reset(padded(q));
   }
 
-  bool push_chunk(JointChunk& chunk) noexcept override {
-    if (chunk.starts) chunk.points[0] = {0.0, stream_.reference().x, stream_.reference().xd, stream_.reference().xdd};
-    const auto push = [&](auto... stamp) noexcept {
-      return chunk.single ? stream_.push(chunk.points[0].x, stamp...)
-                          : stream_.push_chunk(chunk.points.data(), static_cast<int>(chunk.points.size()), stamp...);
-    };
-    return chunk.stamp == 0.0 ? push() : push(chunk.stamp);
-  }
+  bool push_chunk(JointChunk& chunk) noexcept override { return stream_.push(chunk); }
 
-  void set_speed(double fraction) noexcept override { (void)stream_.set_speed(fraction); }
+  void set_speed(double fraction) noexcept override { stream_.set_speed(fraction); }
 
   void tick(Report& report) noexcept override {
-    const auto tick = tracker_->tick(stream_);
+    const auto tick = tracker_->advance(fpbm::references_of(Space{}, options_.dt, stream_));
+    const double error = tick.error.cwiseAbs().maxCoeff();
+    stream_.advance(error);
     report.status = tick.status;
     report.tasks[0].scale = tick.scale;
-    report.tasks[0].orientation_error = tick.error.cwiseAbs().maxCoeff();
+    report.tasks[0].orientation_error = error;
     report.age = stream_.age();
   }
 
@@ -108,7 +102,7 @@ class JointMotion final : public Motion {
   fpbm::LinkFrame<> tip_;
   Tasks tasks_;
   SharedBounds::View bounds_;
-  Stream stream_;
+  KeptStream stream_;
   std::optional<Tracker> tracker_;
 };
 

@@ -71,6 +71,8 @@ void require_finite(const target_controller::Params& params) {
       {"target.angular_jerk", target.angular_jerk},
       {"target.timeout", target.timeout},
       {"stream.delay", params.stream.delay},
+      {"stream.blend", params.stream.blend},
+      {"stream.keep_path", params.stream.keep_path},
       {"clearance.margin", params.clearance.margin},
       {"torque_bounds.fraction", params.torque_bounds.fraction},
       {"torque_bounds.payload.uncertainty", params.torque_bounds.payload.uncertainty}};
@@ -124,12 +126,13 @@ void TargetController::read_parameters() {
   filter.dt = dt_;
   filter.timeout = target.timeout;
   filter.delay = params_.stream.delay;
+  filter.blend = params_.stream.blend;
   const fpbm::TargetBounds<> bounds{target.velocity,         target.acceleration,         target.jerk,
                                     target.angular_velocity, target.angular_acceleration, target.angular_jerk};
   try {
     make_bounds(tree);
-    const MotionSettings settings{tree,   motion_tasks(tree), scheme(robot_->dof()), options, *limits_, bounds,
-                                  filter, bounds_.view()};
+    const MotionSettings settings{tree,   motion_tasks(tree), scheme(robot_->dof()),   options, *limits_, bounds,
+                                  filter, bounds_.view(),     params_.stream.keep_path};
     const bool is_pose = is_tip() && robot_->dof() >= fpbm::Pose::kRows;
     motion_ = params_.input == "joints" ? make_joint_motion(settings)
               : is_pose                 ? make_tip_motion(settings)

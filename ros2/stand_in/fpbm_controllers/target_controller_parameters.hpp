@@ -101,6 +101,8 @@ struct Params {
   } target;
   struct Stream {
     double delay = 0.0;
+    double blend = 0.0;
+    double keep_path = 0.0;
   } stream;
 };
 
@@ -197,6 +199,8 @@ void for_each_parameter(target_controller::Params& p, Visit&& visit) {
   visit("target.angular_jerk", p.target.angular_jerk, above_zero);
   visit("target.timeout", p.target.timeout, above_zero);
   visit("stream.delay", p.stream.delay, not_negative);
+  visit("stream.blend", p.stream.blend, not_negative);
+  visit("stream.keep_path", p.stream.keep_path, not_negative);
 }
 
 }  // namespace stand_in

@@ -57,8 +57,9 @@ struct MotionSettings {
   fpbm::TrackerOptions<> options;
   fpbm::Limits<fpbm::Level::kAcceleration, Eigen::Dynamic> limits;
   fpbm::TargetBounds<> target;   ///< Bounds on each task's reference.
-  fpbm::StreamOptions<> filter;  ///< The delay is only for streams of joint positions.
+  fpbm::StreamOptions<> filter;  ///< The delay and the blend are only for streams of joint positions.
   SharedBounds::View bounds;
+  double keep_path;  ///< Tolerance of a KeptStream [rad].
 };
 
 /// The motion of a robot toward the targets of its tasks, each through a filter, or along a stream of joint positions.
