@@ -8,8 +8,8 @@
 #include "fpbm/limits/detail/box.hpp"
 #include "fpbm/limits/detail/jerk_limited_joint.hpp"
 #include "fpbm/limits/detail/state_check.hpp"
-#include "fpbm/limits/detail/usable_bounds.hpp"
-#include "fpbm/limits/detail/velocity_envelope.hpp"
+#include "fpbm/model/detail/usable_bounds.hpp"
+#include "fpbm/model/detail/velocity_envelope.hpp"
 #include "fpbm/model/joint.hpp"
 
 namespace fpbm {

@@ -36,10 +36,7 @@ class Stream {
   /// Starts at rest at x0 [m, rad]. bounds: TargetBounds, or JointLimits of a JointStream, with finite velocities and
   /// accelerations. Throws std::invalid_argument if x0 is not a point within its range, or a number is out of range.
   Stream(const Point& x0, const Bounds& bounds, const StreamOptions<Scalar>& options = {})
-      : dt_(options.dt),
-        timeout_(options.timeout),
-        delay_(options.delay),
-        blend_(options.blend),
+      : options_(options),
         axes_(bounds, options.dt),
         reference_(Reference<Space, Scalar>::hold(orthonormalised(x0))),
         clock_(options.dt, options.timeout, options.start) {
@@ -60,14 +57,14 @@ class Stream {
   bool push_chunk(const Timed* points, int count, std::optional<double> stamp = {}) noexcept {
     return is_chunk(points, count) && heard(stamp) &&
            schedule_.continue_with(
-               points, count, [this](const Point& x) noexcept { return usable(x); }, clock_.age(), blend_);
+               points, count, [this](const Point& x) noexcept { return usable(x); }, clock_.age(), options_.blend);
   }
 
   /// Point observed at a time `stamp` [s]; default: the current time. The reference passes the point options.delay
   /// later, and continues after the newest point at constant velocity until the timeout. Returns false for a rejected
   /// point, as push_chunk().
   bool push(const Point& x, std::optional<double> stamp = {}) noexcept {
-    return is_usable(x) && heard(stamp) && schedule_.extend(delay_, usable(x), clock_.age());
+    return is_usable(x) && heard(stamp) && schedule_.extend(options_.delay, usable(x), clock_.age());
   }
 
   /// Whether a point is finite, with a rotation R, and at most a tenth of the width of a joint's range outside this
@@ -97,18 +94,18 @@ class Stream {
   [[nodiscard]] Reference<Space, Scalar> ahead(Scalar seconds) const noexcept {
     return seconds == Scalar(0) ? reference_ : step(seconds).to;
   }
-  [[nodiscard]] Scalar dt() const noexcept { return dt_; }
+  [[nodiscard]] Scalar dt() const noexcept { return options_.dt; }
   /// Time since the newest stamp [s], and displacement from the reference to the target [m, rad].
   [[nodiscard]] Scalar age() const noexcept { return clock_.age(); }
   [[nodiscard]] Twist gap() const noexcept { return compensation_.difference(target().x, reference_.x); }
 
   /// Advances by one tick.
   void advance() noexcept {
-    const Step next = step(dt_);
+    const Step next = step(options_.dt);
     compensation_.add(next.displacement, next.to.x, reference_.x);
     reference_ = next.to;
     clock_.advance();
-    if (schedule_.continues() && clock_.age() > schedule_.end_time() + timeout_) stop();
+    if (schedule_.continues() && clock_.age() > schedule_.end_time() + options_.timeout) stop();
   }
 
   /// Restarts at rest at x, with the same speed, and forgets all chunks and an estimated clock. Returns false, without
@@ -140,8 +137,8 @@ class Stream {
   }
 
   [[nodiscard]] Step step(Scalar seconds) const noexcept {
-    const auto motion =
-        axes_.join(reference_, gap(), schedule_, clock_.age(), clock_.rate(), extent(reference_.x), seconds, dt_);
+    const auto motion = axes_.join(reference_, gap(), schedule_, clock_.age(), clock_.rate(), extent(reference_.x),
+                                   seconds, options_.dt);
     const bool exact = motion.arrived && Space::kTurns != 1;  // An angle in the plane may differ by full turns.
     return {
         {exact ? target(seconds).x : compensation_.displace(reference_.x, motion.displacement), motion.xd, motion.xdd},
@@ -184,10 +181,7 @@ class Stream {
     schedule_.hold(usable(Space::template displace<Scalar>(last.x, displacement)));
   }
 
-  Scalar dt_;
-  Scalar timeout_;
-  Scalar delay_;
-  Scalar blend_;
+  StreamOptions<Scalar> options_;
   TargetAxes<Space, Scalar> axes_;
   Reference<Space, Scalar> reference_;
   RoundingCompensation<Space, Scalar> compensation_;

@@ -7,7 +7,7 @@
 #include "fpbm/core/detail/quickest_stop.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/limits/detail/box.hpp"
-#include "fpbm/limits/detail/velocity_envelope.hpp"
+#include "fpbm/model/detail/velocity_envelope.hpp"
 
 namespace fpbm {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fpbm/limits/detail/velocity_envelope.hpp"
+#include "fpbm/model/detail/velocity_envelope.hpp"
 #include "fpbm/path/detail/time_optimal_axis.hpp"
 #include "fpbm/target/detail/target_bounds.hpp"
 
@@ -77,8 +77,9 @@ struct JoiningAxis {
     const Range<Scalar> stop = extremes(end);
     const bool far = stop.high > most.high;
     const bool near = stop.low < most.low;
-    if (!(envelope.delay > Scalar(0)))
+    if (!(envelope.delay > Scalar(0))) {
       return axis.approach(from, far ? range.high : range.low, Scalar(0), seconds, tolerance);
+    }
     // The envelope admits the velocity at the end of the stop everywhere before.
     TimeOptimalAxis<Scalar> slow = axis;
     slow.velocity = std::min({axis.velocity, envelope_at(ends.high - stop.high), envelope_at(stop.low - ends.low)});

@@ -8,8 +8,8 @@
 
 #include "fpbm/core/detail/validation.hpp"
 #include "fpbm/geometry/detail/joint_space.hpp"
-#include "fpbm/limits/detail/usable_bounds.hpp"
-#include "fpbm/limits/detail/velocity_envelope.hpp"
+#include "fpbm/model/detail/usable_bounds.hpp"
+#include "fpbm/model/detail/velocity_envelope.hpp"
 #include "fpbm/model/joint.hpp"
 #include "fpbm/path/detail/time_optimal_axis.hpp"
 
