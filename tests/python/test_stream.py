@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import fpbm_cpp as fp
-from fpbm_cpp.job.motion import READY as PRESET_POSTURES
 
 DT = 1e-3
 Q0 = np.array([0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785])
@@ -174,7 +173,7 @@ def test_the_velocity_envelopes_of_an_fr3():
     """A posture beside the upper ends: the bounds on velocity decrease toward the ends."""
     arm = fp.SerialArm.preset("fr3")
     limits = arm.limits
-    stream = fp.JointStream(arm, PRESET_POSTURES["fr3"], start=0.0)
+    stream = fp.JointStream(arm, Q0, start=0.0)
     assert stream.push_chunk([limits.upper - 0.02], period=0.02)
     q, qd = [], []
     while np.any(stream.gap != 0.0):
