@@ -684,9 +684,9 @@ class JointStream(Stream):
         Time without a message after which the reference of single postures stops [s].
     delay : float
         Time after which the reference passes the postures of push [s]: the period of the stream plus its jitter. With 0, the
-        motion is extrapolated.
+        reference follows a prediction from the last three postures.
     blend : float
-        Time in which the target changes from a chunk to the next [s]: gentle corrections for noisy policies. With 0, a chunk
+        Least time in which the target changes from a chunk to the next [s]: gentle corrections for noisy policies. With 0, a chunk
         that does not continue the chunk before is joined in minimum time.
     start : float, optional
         Time of the first tick on the clock of the stamps [s]. Default: estimated from the stamps.

@@ -267,10 +267,12 @@ TEST(Stream, blends_chunks) {
   const Deviation sudden = follow_chunks(0.02, kTick, options, jump);
   options.blend = 0.2;
   const Deviation blended = follow_chunks(0.02, kTick, options, jump);
-  std::printf("acceleration off by %.2g without a blend, by %.2g with\n", sudden.ripple, blended.ripple);
+  const double scale = 0.2 * kPi * kPi;
+  std::printf("acceleration off by %.2g rad/s^2 without a blend, by %.2g rad/s^2 with\n", scale * sudden.ripple,
+              scale * blended.ripple);
   EXPECT_LE(blended.lag, 2.01e-3);
   // The largest acceleration of a polynomial of degree 5 that moves by d in a time T is 10/sqrt(3) d/T^2.
-  EXPECT_LE(blended.ripple * 0.2 * kPi * kPi, 1.2 * 10.0 / std::sqrt(3.0) * 2e-3 / (0.2 * 0.2));
+  EXPECT_LE(scale * blended.ripple, 1.2 * 10.0 / std::sqrt(3.0) * 2e-3 / (0.2 * 0.2));
   EXPECT_GE(sudden.ripple, 10.0 * blended.ripple);
 }
 

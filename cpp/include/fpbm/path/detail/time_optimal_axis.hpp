@@ -54,8 +54,7 @@ struct TimeOptimalAxis {
   }
 
   /// Tolerance for ticks of length h [s]: the larger of the round-off error and a part of J h³, the displacement of a
-  /// tick at the bound on jerk. size: largest coordinate of the target, for the round-off error.
-  /// part: of J h³.
+  /// tick at the bound on jerk. size: largest coordinate of the target, for the round-off error. part: factor of J h³.
   ///
   /// Factors of 1e-6 to 1e-2 of J h³, and of 1 to 80 epsilon, pass TargetTurn.* and TargetStream*. With 1e-7 of J h³,
   /// TargetTurn.* fails.

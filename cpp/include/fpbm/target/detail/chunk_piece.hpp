@@ -46,8 +46,8 @@ struct ChunkPiece {
   Twist d;              ///< Displacement to the next point.
   Rates<Twist> end;     ///< Rates of the displacement at the next point.
   bool joined = false;  ///< Whether the next piece begins at the next point with the same velocity and acceleration.
-  Twist low;            ///< Least coordinates of this piece and all pieces after this piece; lengths and joints only.
-  Twist high;           ///< Largest coordinates.
+  Twist low;            ///< Least coordinates of this piece and all later pieces, of lengths and joints only [m, rad].
+  Twist high;           ///< Largest coordinates [m, rad].
 
   /// Rest, or motion at constant velocity, from a time on.
   [[nodiscard]] static ChunkPiece last(Scalar time, const Moving& start) noexcept {
@@ -55,6 +55,7 @@ struct ChunkPiece {
     return {time, start, Scalar(0), none, {none, none}, false, none, none};
   }
 
+  /// Sets the time and the displacement to the next point.
   void lead_to(const ChunkPiece& next) noexcept {
     h = next.from - from;
     d = Space::template difference<Scalar>(next.start.x, start.x);

@@ -121,8 +121,8 @@ struct AxesOf<JointSpace<M>, Scalar> {
   }
 
  private:
-  /// A bound minus a reserve, which may be at most a part of the bound: in single precision, the rounding is larger
-  /// than the bounds on jerk of arms.
+  /// A bound minus a reserve, which is at most a thousandth of the bound, a choice: in single precision, the rounding
+  /// is larger than the bounds on jerk of arms.
   [[nodiscard]] static Scalar reduced(Scalar bound, Scalar reserve) noexcept {
     return bound - std::min(reserve, bound / Scalar(1000));
   }
@@ -148,10 +148,10 @@ struct TargetFilterOptions {
 template <typename Scalar = double>
 struct StreamOptions : TargetFilterOptions<Scalar> {
   /// Time after which the reference passes the points of push() [s]. With the period of the stream plus its jitter, the
-  /// motion between the points is smooth. With 0, the target is extrapolated.
+  /// motion between the points is smooth. With 0, the reference follows a prediction from the last three points.
   Scalar delay = Scalar(0);
-  /// Time in which the target changes from a chunk to the next [s]. With 0, the reference joins a chunk that is not a
-  /// continuation of the chunk before in minimum time.
+  /// Least time in which the target changes from a chunk to the next [s]. With 0, the reference joins a chunk that is
+  /// not a continuation of the chunk before in minimum time.
   Scalar blend = Scalar(0);
 
   void require_good() const {
